@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Messages to the person at the terminal: warnings and status lines on standard error, so that standard
+// output stays free for tables and JSON.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+namespace obscura {
+
+// Only warnings and errors are printed from now on (--quiet).
+void set_quiet(bool quiet);
+bool is_quiet();
+
+void log_info(const std::string& message);
+void log_warning(const std::string& message);
+void log_error(const std::string& message);
+
+template <typename... Args>
+void log_info(fmt::format_string<Args...> format, Args&&... args) {
+    log_info(fmt::format(format, std::forward<Args>(args)...));
+}
+
+template <typename... Args>
+void log_warning(fmt::format_string<Args...> format, Args&&... args) {
+    log_warning(fmt::format(format, std::forward<Args>(args)...));
+}
+
+}  // namespace obscura

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the binary tree to the device's layout: which subtrees become wide nodes and which become leaves of
+// whole blocks, at the least SAH cost, found by dynamic programming over the binary tree.
+// After Ylitie, Karras, Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
+// BVHs", section 3; the cost of a leaf here counts blocks of four, not triangles.
+#pragma once
+
+#include "bvh/binary_tree.h"
+
+namespace obscura {
+
+// Costs of the surface area heuristic. Measured on x86: testing a node's eight boxes, sorting and pushing
+// what was hit takes about as long as one and a half blocks of four triangles.
+constexpr float NODE_COST = 1.5F;
+constexpr float BLOCK_COST = 1.0F;
+
+constexpr uint32_t MAX_LEAF_BLOCKS = BVH_LEAF_COUNT_MASK;
+constexpr uint32_t MAX_LEAF_TRIANGLES = MAX_LEAF_BLOCKS * BLOCK_WIDTH;
+
+// width: the most children per node, 2..BVH_WIDTH. Narrower nodes cost more and need less stack.
+// Fills nodes, blocks, depth and stack_entries.
+Bvh collapse(const BinaryTree& tree, const Scene& scene, uint32_t width);
+
+}  // namespace obscura

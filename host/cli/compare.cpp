@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads two images, checks that they can be compared, and reports as a table or as JSON. The headline numbers
+// are those of one layer: the chosen one, else beauty, else the first.
+#include "cli/compare.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "base/file.h"
+#include "base/log.h"
+#include "film/attributes.h"
+#include "film/image.h"
+#include "film/metrics.h"
+
+namespace obscura {
+namespace {
+
+const std::map<std::string, Metric> METRICS = {
+    {"rmse", Metric::rmse}, {"relmse", Metric::relmse}, {"mape", Metric::mape}, {"max_abs", Metric::max_abs}};
+
+struct CompareOptions {
+    std::string image;
+    std::string reference;
+    std::string layer = "all";
+    std::string metric = "rmse";
+    double bound = 0;
+    std::string heat_map;
+    std::string json;
+};
+
+// What was compared and what came of it.
+struct Verdict {
+    ImageDifference difference;
+    size_t headline = 0;  // the layer whose numbers stand for the image: the chosen one, beauty, or the first
+    bool identical = true;
+    bool within_bound = true;
+};
+
+std::string attribute_or_none(const Image& image, const char* name) {
+    const auto found = image.attributes.find(name);
+    return found == image.attributes.end() ? "not known" : attribute_text(found->second);
+}
+
+void check_comparable(const CompareOptions& options, const Image& image, const Image& reference) {
+    if (image.full_width != reference.full_width || image.full_height != reference.full_height) {
+        throw InputError("{}: it is {} x {} pixels, but {} is {} x {}", options.image, image.full_width,
+                         image.full_height, options.reference, reference.full_width, reference.full_height);
+    }
+    if (image.x0 != reference.x0 || image.x1 != reference.x1 || image.y0 != reference.y0 ||
+        image.y1 != reference.y1) {
+        throw InputError("{}: it holds the crop [{}, {}) x [{}, {}), but {} holds [{}, {}) x [{}, {})",
+                         options.image, image.x0, image.x1, image.y0, image.y1, options.reference,
+                         reference.x0, reference.x1, reference.y0, reference.y1);
+    }
+    for (const char* name : {attribute::SPP, attribute::SEED}) {
+        const std::string a = attribute_or_none(image, name);
+        const std::string b = attribute_or_none(reference, name);
+        if (a == b) continue;
+        log_warning("The images were made with different settings: {} is {} in {} and {} in {}.", name, a,
+                    options.image, b, options.reference);
+    }
+}
+
+void warn_of_missing(const std::vector<std::string>& channels, const std::string& owner) {
+    if (channels.empty()) return;
+    log_warning("Only {} has the channels {}; they are not compared.", owner, fmt::join(channels, " "));
+}
+
+// Drops all layers but the chosen one.
+void keep_layer(Image& image, const std::string& title, const std::string& file) {
+    std::vector<std::string> titles;
+    for (const Layer& layer : image.layers)
+        titles.push_back(layer.title());
+    std::erase_if(image.layers, [&](const Layer& layer) { return layer.title() != title; });
+    if (image.layers.empty()) {
+        throw InputError("{}: it has no layer {}, only {}", file, title, fmt::join(titles, ", "));
+    }
+}
+
+Verdict judge(const CompareOptions& options, const Image& image, const Image& reference) {
+    Verdict verdict{compare_images(image, reference)};
+    warn_of_missing(verdict.difference.only_in_image, options.image);
+    warn_of_missing(verdict.difference.only_in_reference, options.reference);
+    const auto& layers = verdict.difference.layers;
+    if (layers.empty()) {
+        throw InputError("{}: it has no channel in common with {}", options.image, options.reference);
+    }
+    const Metric metric = METRICS.at(options.metric);
+    for (size_t i = 0; i < layers.size(); ++i) {
+        if (layers[i].title == "beauty") verdict.headline = i;
+        verdict.identical = verdict.identical && layers[i].identical;
+        verdict.within_bound = verdict.within_bound && layers[i].is_within(metric, options.bound);
+    }
+    return verdict;
+}
+
+nlohmann::ordered_json numbers(const LayerDifference& layer) {
+    return {{"identical", layer.identical}, {"max_abs", layer.max_abs},
+            {"rmse", layer.rmse},           {"relmse", layer.relmse},
+            {"mape", layer.mape},           {"mse", layer.mse},
+            {"values", layer.value_count},  {"not_finite", layer.not_finite_count}};
+}
+
+void write_json(const CompareOptions& options, const Verdict& verdict) {
+    const auto& layers = verdict.difference.layers;
+    nlohmann::ordered_json json = numbers(layers[verdict.headline]);
+    json["identical"] = verdict.identical;
+    json["layer"] = layers[verdict.headline].title;
+    json["metric"] = options.metric;
+    json["bound"] = options.bound;
+    json["within_bound"] = verdict.within_bound;
+    for (const LayerDifference& layer : layers)
+        json["layers"][layer.title] = numbers(layer);
+    json["only_in_image"] = verdict.difference.only_in_image;
+    json["only_in_reference"] = verdict.difference.only_in_reference;
+    const std::string text = json.dump(2) + "\n";
+    if (options.json == "-") {
+        fmt::print("{}", text);
+    } else {
+        write_text(options.json, text);
+    }
+}
+
+std::string conclusion(const CompareOptions& options, const Verdict& verdict) {
+    if (verdict.identical) return "The images are bit-identical.";
+    if (options.bound == 0) return "The images differ.";
+    return fmt::format("The images differ, {} the bound: {} at most {} in every layer.",
+                       verdict.within_bound ? "within" : "beyond", options.metric, options.bound);
+}
+
+void print_table(const CompareOptions& options, const Verdict& verdict) {
+    const auto& layers = verdict.difference.layers;
+    size_t width = 5;
+    for (const LayerDifference& layer : layers)
+        width = std::max(width, layer.title.size());
+    fmt::print("{:<{}}  identical  {:>10}  {:>10}  {:>10}  {:>10}  not finite\n", "layer", width, "max_abs",
+               "rmse", "relmse", "mape");
+    for (const LayerDifference& layer : layers) {
+        fmt::print("{:<{}}  {:>9}  {:>10.4g}  {:>10.4g}  {:>10.4g}  {:>10.4g}  {:>10}\n", layer.title, width,
+                   layer.identical ? "yes" : "no", layer.max_abs, layer.rmse, layer.relmse, layer.mape,
+                   layer.not_finite_count);
+    }
+    fmt::print("{}\n", conclusion(options, verdict));
+}
+
+ExitCode run_compare(const CompareOptions& options) {
+    if (!(options.bound >= 0)) throw InputError("--bound: it must be 0 or more, and is {}", options.bound);
+    Image image = read_exr(options.image);
+    Image reference = read_exr(options.reference);
+    check_comparable(options, image, reference);
+    if (options.layer != "all") {
+        keep_layer(image, options.layer, options.image);
+        keep_layer(reference, options.layer, options.reference);
+    }
+    const Verdict verdict = judge(options, image, reference);
+    if (!options.heat_map.empty()) {
+        const std::string title = verdict.difference.layers[verdict.headline].title;
+        write_heat_map_png(image, reference, title == "beauty" ? "" : title, options.heat_map);
+    }
+    if (options.json.empty()) {
+        print_table(options, verdict);
+    } else {
+        write_json(options, verdict);
+    }
+    return verdict.within_bound ? ExitCode::ok : ExitCode::check_failed;
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, ExitCode& exit_code) {
+    const auto options = std::make_shared<CompareOptions>();
+    CLI::App* command = app.add_subcommand(
+        "compare", "Measure how far an image is from a reference; exit code 0 within the bound, 1 beyond it");
+    command->add_option("image", options->image, "The image (EXR)")->required();
+    command->add_option("reference", options->reference, "The reference (EXR)")->required();
+    command->add_option("--layer", options->layer, "A layer's name, beauty, or all")->capture_default_str();
+    command->add_option("--metric", options->metric, "What the bound limits: rmse, relmse, mape or max_abs")
+        ->check(CLI::IsMember(METRICS))
+        ->capture_default_str();
+    command->add_option("--bound", options->bound, "The largest error allowed; 0 asks for identical bits")
+        ->capture_default_str();
+    command->add_option("--heatmap", options->heat_map, "Write the relative error per pixel as PNG");
+    command->add_option("--json", options->json, "Write the numbers to a file (- for standard output)");
+    command->callback([options, &exit_code] { exit_code = run_compare(*options); });
+}
+
+}  // namespace obscura

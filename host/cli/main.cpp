@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program: one subcommand per file beside this one. The only catch, and the only exit code.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "cli/compare.h"
+#include "cli/devices.h"
+#include "cli/info.h"
+#include "cli/merge.h"
+#include "cli/render.h"
+
+namespace obscura {
+namespace {
+
+ExitCode run(int argc, char** argv) {
+    CLI::App app("Renders scenes with ray-traced obscurances on any OpenCL device.", "obscura");
+    app.set_version_flag("--version", "obscura " OBSCURA_VERSION);
+    app.require_subcommand(1);
+    ExitCode exit_code = ExitCode::ok;
+    add_compare_command(app, exit_code);
+    add_devices_command(app, exit_code);
+    add_info_command(app, exit_code);
+    add_merge_command(app, exit_code);
+    add_render_command(app, exit_code);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        // --help and --version end here too, with success; anything else is a usage error.
+        return app.exit(error) == 0 ? ExitCode::ok : ExitCode::bad_input;
+    }
+    return exit_code;
+}
+
+}  // namespace
+}  // namespace obscura
+
+int main(int argc, char** argv) {
+    using obscura::ExitCode;
+    ExitCode exit_code = ExitCode::ok;
+    try {
+        exit_code = obscura::run(argc, argv);
+        if (std::fflush(stdout) != 0) throw obscura::InputError("Standard output can't be written");
+    } catch (const obscura::InputError& error) {
+        obscura::log_error(error.what());
+        exit_code = ExitCode::bad_input;
+    } catch (const obscura::DeviceError& error) {
+        obscura::log_error(error.what());
+        exit_code = ExitCode::device_failure;
+    } catch (const std::bad_alloc&) {
+        obscura::log_error("The memory of this machine doesn't suffice for this input.");
+        exit_code = ExitCode::bad_input;
+    } catch (const std::exception& error) {
+        obscura::log_error(std::string("An unexpected failure, please report it: ") + error.what());
+        exit_code = ExitCode::bad_input;
+    }
+    return static_cast<int>(exit_code);
+}

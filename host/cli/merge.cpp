@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads all parts, merges, and writes only when everything fits together.
+#include "cli/merge.h"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/file.h"
+#include "base/log.h"
+#include "film/image.h"
+
+namespace obscura {
+namespace {
+
+struct MergeOptions {
+    std::vector<std::string> parts;
+    std::string output;
+    std::string preview;
+    double exposure_stops = 0;
+};
+
+ExitCode run_merge(const MergeOptions& options) {
+    require_writable(options.output);
+    if (!options.preview.empty()) require_writable(options.preview);
+    std::vector<Image> parts;
+    for (const std::string& part : options.parts)
+        parts.push_back(read_exr(part));
+    const Image merged = merge_images(parts, options.parts);
+    write_exr(merged, options.output);
+    if (!options.preview.empty()) write_preview_png(merged, options.preview, options.exposure_stops);
+    log_info("Merged {} parts into {} ({} x {} pixels).", parts.size(), options.output, merged.full_width,
+             merged.full_height);
+    return ExitCode::ok;
+}
+
+}  // namespace
+
+void add_merge_command(CLI::App& app, ExitCode& exit_code) {
+    const auto options = std::make_shared<MergeOptions>();
+    CLI::App* command =
+        app.add_subcommand("merge", "Merge the parts of one picture (crops) into the whole, exactly");
+    command->add_option("parts", options->parts, "The parts (EXR)")->required();
+    command->add_option("-o,--output,--outfile", options->output, "The whole picture (EXR)")->required();
+    CLI::Option* preview = command->add_option("--preview", options->preview, "Write a preview (PNG) too");
+    command->add_option("--exposure", options->exposure_stops, "The preview's exposure in stops")
+        ->needs(preview)
+        ->capture_default_str();
+    command->callback([options, &exit_code] { exit_code = run_merge(*options); });
+}
+
+}  // namespace obscura

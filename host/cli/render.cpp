@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/render.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/file.h"
+#include "base/log.h"
+#include "base/progress.h"
+#include "cli/render_options.h"
+#include "cli/stats.h"
+#include "film/develop.h"
+#include "scene/gltf.h"
+#include "wavefront/render.h"
+
+namespace obscura {
+namespace {
+
+struct OutputOptions {
+    std::string output;
+    std::string preview;
+    std::string stats;
+    std::vector<std::string> layers{"emission",        "direct",           "ambient",   "specular.emission",
+                                    "specular.direct", "specular.ambient", "obscurance"};
+    double exposure_stops = 0;
+    bool half_color = false;
+};
+
+std::atomic<bool> interrupted{false};
+
+// The first Ctrl-C asks the render to stop after its wave; a second one ends the program at once.
+void handle_interrupt(int signal) {
+    interrupted = true;
+    std::signal(signal, SIG_DFL);
+    static constexpr char MESSAGE[] =
+        "\nobscura: stopping after this wave; interrupt again to stop at once\n";
+    [[maybe_unused]] const auto written = write(STDERR_FILENO, MESSAGE, sizeof(MESSAGE) - 1);
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::vector<std::string> all_layer_names() {
+    std::vector<std::string> names;
+    for (const LayerInfo& info : layer_table())
+        names.emplace_back(info.name);
+    return names;
+}
+
+// "all" and "none" stand for themselves; anything else must be in the table.
+std::vector<std::string> resolve_layers(const std::vector<std::string>& wanted) {
+    const std::vector<std::string> known = all_layer_names();
+    if (wanted == std::vector<std::string>{"all"}) return known;
+    if (wanted == std::vector<std::string>{"none"}) return {};
+    std::vector<std::string> layers;
+    for (const std::string& name : wanted) {
+        if (std::ranges::find(known, name) == known.end()) {
+            throw InputError("--layers {}: there is no such layer; choose from {}, or all, or none", name,
+                             fmt::join(known, ", "));
+        }
+        if (std::ranges::find(layers, name) == layers.end()) layers.push_back(name);
+    }
+    return layers;
+}
+
+// Writes what there is. If the picture can't be written where it was asked for, it goes to the folder for temporary files
+// before the error is reported: hours of rendering are not lost to a full disk.
+void write_picture(const Image& image, const OutputOptions& out) {
+    try {
+        write_exr(image, out.output, out.half_color);
+    } catch (const InputError& error) {
+        const auto rescue =
+            std::filesystem::temp_directory_path() / std::filesystem::path(out.output).filename();
+        if (rescue == std::filesystem::absolute(out.output)) throw;
+        write_exr(image, rescue, out.half_color);
+        throw InputError("{} The picture was saved as {} instead.", error.what(), rescue.string());
+    }
+    if (!out.preview.empty()) write_preview_png(image, out.preview, out.exposure_stops);
+}
+
+void print_summary(const RenderResult& result, const OutputOptions& out, const RunSeconds& seconds) {
+    const double rays = static_cast<double>(result.rays.total());
+    log_info("{} rays in {}, {} rays/s (camera {}, shadow {}, glossy {}, obscurance {})", si_count(rays),
+             duration_text(result.seconds.render), si_count(rays / result.seconds.render),
+             si_count(static_cast<double>(result.rays.camera)),
+             si_count(static_cast<double>(result.rays.shadow)),
+             si_count(static_cast<double>(result.rays.glossy)),
+             si_count(static_cast<double>(result.rays.obscurance)));
+    log_info("load {}, build {}, compile {}, upload {}, render {}, write {}; device memory at most {}",
+             duration_text(seconds.load), duration_text(result.seconds.build),
+             duration_text(result.seconds.compile), duration_text(result.seconds.upload),
+             duration_text(result.seconds.render), duration_text(seconds.write),
+             bytes_text(result.bytes.at("peak_device")));
+    log_info("wrote {}{}", out.output, out.preview.empty() ? "" : " and " + out.preview);
+}
+
+ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
+    set_quiet(options.quiet);
+    const auto start = std::chrono::steady_clock::now();
+    for (const std::string& path : {out.output, out.preview, out.stats}) {
+        if (!path.empty() && path != "-") require_writable(path);
+    }
+    const RenderSettings settings = settings_of(options);
+    const std::vector<std::string> layers = resolve_layers(out.layers);
+    const uint64_t queue_bytes = parse_bytes(options.memory);
+    const Scene scene = load_gltf(find_scene_file(options.scene));
+    RunSeconds seconds;
+    seconds.load = seconds_since(start);
+
+    Device device = open_device(options.device);
+    ProgramLibrary library(device, options.local_size);
+    log_info("{}: {} triangles, {} objects; device {}", scene.name, scene.triangles.size(),
+             scene.objects.size(), device.name());
+    std::signal(SIGINT, handle_interrupt);
+    std::signal(SIGTERM, handle_interrupt);
+    std::unique_ptr<Progress> progress;
+    const RenderJob job{scene,
+                        settings,
+                        layers,
+                        queue_bytes,
+                        options.wave_size == 0 ? DEFAULT_WAVE_SIZE : options.wave_size,
+                        options.portable};
+    const RenderResult result =
+        render_scene(device, library, job, [&](double fraction, const RayCounts& rays) {
+            if (!progress) progress = std::make_unique<Progress>("render", "rays");
+            progress->update(fraction, rays.total());
+            return !interrupted.load();
+        });
+    if (progress) progress->finish(result.rays.total());
+    progress.reset();
+
+    const auto write_start = std::chrono::steady_clock::now();
+    write_picture(result.image, out);
+    seconds.write = seconds_since(write_start);
+    seconds.total = seconds_since(start);
+    if (!out.stats.empty()) write_stats(out.stats, scene, device.info(), result, seconds);
+    print_summary(result, out, seconds);
+    if (result.complete) return ExitCode::ok;
+    log_warning("stopped early: the picture is saved with the samples it has");
+    return ExitCode::interrupted;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, ExitCode& exit_code) {
+    CLI::App* command = app.add_subcommand("render", "Render a scene with ray-traced obscurances");
+    const auto options = add_render_options(*command);
+    const auto out = std::make_shared<OutputOptions>();
+    const char* group = "Output";
+    command->add_option("-o,--output,--outfile", out->output, "The picture with all its layers (EXR)")
+        ->required()
+        ->type_name("X.exr")
+        ->group(group);
+    command->add_option("--preview", out->preview, "The beauty layer as an 8-bit PNG too")
+        ->type_name("X.png")
+        ->group(group);
+    command->add_option("--exposure", out->exposure_stops, "The preview's exposure in stops")
+        ->capture_default_str()
+        ->group(group);
+    command->add_option("--layers", out->layers, "Layers beside beauty, separated by commas; all, or none")
+        ->delimiter(',')
+        ->capture_default_str()
+        ->group(group);
+    command->add_flag("--exr-half", out->half_color, "Colours as 16-bit floats: half the file")->group(group);
+    command->add_option("--stats", out->stats, "Write the run's figures as JSON; - is standard output")
+        ->type_name("FILE.json|-")
+        ->group(group);
+    command->callback([options, out, &exit_code] { exit_code = run_render(*options, *out); });
+}
+
+}  // namespace obscura

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/render_options.h"
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "base/error.h"
+
+namespace obscura {
+namespace {
+
+constexpr uint32_t MAX_IMAGE_SIZE = 65536;  // pixels per side
+constexpr uint32_t MAX_SAMPLES = 1u << 24;  // per pixel and per point: float counts them exactly
+
+template <typename Enum>
+CLI::Option* add_choice(CLI::App& command, const std::string& name, Enum& value,
+                        const std::map<std::string, Enum>& choices, const std::string& help) {
+    return command.add_option(name, value, help)
+        ->transform(CLI::CheckedTransformer(choices, CLI::ignore_case));
+}
+
+CLI::Option* add_switch(CLI::App& command, const std::string& name, bool& value, const std::string& help) {
+    return add_choice<bool>(command, name, value, {{"on", true}, {"off", false}}, help);
+}
+
+void add_rgb(CLI::App& command, const std::string& name, std::optional<Rgb>& value, const std::string& help) {
+    command
+        .add_option_function<std::vector<float>>(
+            name,
+            [&value, name](const std::vector<float>& rgb) {
+                for (const float channel : rgb) {
+                    if (!std::isfinite(channel) || channel < 0) {
+                        throw CLI::ValidationError(name, "the three values must be finite and not negative");
+                    }
+                }
+                value = Rgb(rgb[0], rgb[1], rgb[2]);
+            },
+            help)
+        ->delimiter(',')
+        ->expected(3)
+        ->type_name("R,G,B");
+}
+
+void add_image_options(CLI::App& command, RenderOptions& o) {
+    RenderSettings& s = o.settings;
+    command.add_option("--width", s.width, "Pixels across")
+        ->check(CLI::Range(1u, MAX_IMAGE_SIZE))
+        ->capture_default_str()
+        ->group("Picture");
+    command.add_option("--height", s.height, "Pixels down")
+        ->check(CLI::Range(1u, MAX_IMAGE_SIZE))
+        ->capture_default_str()
+        ->group("Picture");
+    command.add_option("--spp,--samples-per-pixel", s.spp, "Camera rays per pixel")
+        ->check(CLI::Range(1u, MAX_SAMPLES))
+        ->capture_default_str()
+        ->group("Picture");
+    command.add_option("--camera", s.camera, "Name or number of the scene's camera; the first if not given")
+        ->group("Picture");
+    command
+        .add_option_function<std::vector<double>>(
+            "--cropwindow",
+            [&s](const std::vector<double>& v) {
+                const bool ordered =
+                    0 <= v[0] && v[0] < v[1] && v[1] <= 1 && 0 <= v[2] && v[2] < v[3] && v[3] <= 1;
+                if (!ordered)
+                    throw CLI::ValidationError("--cropwindow",
+                                               "needs 0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1");
+                s.crop = {v[0], v[1], v[2], v[3]};
+            },
+            "Part of the picture to render, as fractions of its size")
+        ->delimiter(',')
+        ->expected(4)
+        ->type_name("X0,X1,Y0,Y1")
+        ->group("Picture");
+    add_choice<PixelFilter>(command, "--filter", s.filter,
+                            {{"box", PixelFilter::box},
+                             {"tent", PixelFilter::tent},
+                             {"gauss", PixelFilter::gauss},
+                             {"bh", PixelFilter::blackman_harris}},
+                            "Pixel filter")
+        ->default_str("box")
+        ->group("Picture");
+    add_rgb(command, "--background", s.background, "Radiance of the sky behind the scene");
+}
+
+void add_model_options(CLI::App& command, RenderOptions& o) {
+    RenderSettings& s = o.settings;
+    const char* group = "Obscurances and light";
+    command
+        .add_option("--obscurance-rays,--ao-samples", s.obscurance_rays,
+                    "Obscurance rays per diffuse hit (K)")
+        ->check(CLI::Range(1u, MAX_SAMPLES))
+        ->capture_default_str()
+        ->group(group);
+    command.add_option("--rho,--falloff", o.rho, "Falloff: step|linear|sqrt|cbrt|exp[:lambda]|expjump|pow:p")
+        ->capture_default_str()
+        ->group(group);
+    command
+        .add_option("--dmax,--ao-distance", o.d_max,
+                    "Reach of the obscurances: metres, per cent of the scene's diagonal (50%), or inf")
+        ->capture_default_str()
+        ->group(group);
+    add_choice<Ambient>(
+        command, "--ambient", s.ambient,
+        {{"obscurance", Ambient::obscurance}, {"constant", Ambient::constant}, {"none", Ambient::none}},
+        "Ambient light: weighted by obscurances, constant, or none")
+        ->default_str("obscurance")
+        ->group(group);
+    add_switch(command, "--bleeding", s.bleeding,
+               "Colour bleeding: obscurance rays carry the colour they meet")
+        ->default_str("on")
+        ->group(group);
+    add_rgb(command, "--ambient-light", s.ambient_light,
+            "Ambient radiance at an open point, instead of the scene's");
+    command.add_option("--ambient-scale", s.ambient_scale, "Multiplies the ambient light")
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str()
+        ->group(group);
+    command.add_flag("!--no-obscurance", s.obscurance, "Leave out the ambient light")->group(group);
+    command.add_flag("!--no-direct", s.direct, "Leave out direct light on diffuse surfaces")->group(group);
+    command.add_flag("!--no-specular", s.specular, "Leave out reflections and transmission")->group(group);
+    command.add_option("--light-samples", s.light_samples, "Shadow rays per hit for each group of lights")
+        ->check(CLI::Range(1u, 4096u))
+        ->capture_default_str()
+        ->group(group);
+    command.add_option("--max-depth", s.max_depth, "Longest chain of reflections")
+        ->check(CLI::Range(0u, 64u))
+        ->capture_default_str()
+        ->group(group);
+    add_switch(command, "--roulette", s.roulette,
+               "Follow weak reflections only now and then, with more weight")
+        ->default_str("on")
+        ->group(group);
+}
+
+void add_work_options(CLI::App& command, RenderOptions& o) {
+    RenderSettings& s = o.settings;
+    const char* group = "Work";
+    add_choice<SamplerKind>(command, "--sampler", s.sampler,
+                            {{"auto", SamplerKind::automatic},
+                             {"lattice", SamplerKind::lattice},
+                             {"owen", SamplerKind::owen},
+                             {"random", SamplerKind::random}},
+                            "Sample points; auto picks the best for spp x obscurance rays")
+        ->default_str("auto")
+        ->group(group);
+    command.add_option("--seed", s.seed, "Another seed, another noise")->capture_default_str()->group(group);
+    command
+        .add_option("--device", o.device, "Index, platform:device, or part of a name (see obscura devices)")
+        ->envname("OBSCURA_DEVICE")
+        ->group(group);
+    command.add_option("--memory", o.memory, "Device memory for the queues: bytes, or with K, M, G")
+        ->capture_default_str()
+        ->group(group);
+    command
+        .add_option("--wave-size", o.wave_size,
+                    "Camera samples in flight at once; changes speed, not pictures")
+        ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 31))
+        ->group(group);
+    command
+        .add_option("--local-size", o.local_size, "Work items per work group; changes speed, not pictures")
+        ->check(CLI::Range(1u, 4096u))
+        ->capture_default_str()
+        ->group(group);
+    add_choice<NeedsMode>(command, "--needs", s.needs,
+                          {{"auto", NeedsMode::automatic}, {"all", NeedsMode::all}},
+                          "Model only what the scene needs, or everything")
+        ->default_str("auto")
+        ->group(group);
+    command
+        .add_flag("--portable-kernels", o.portable,
+                  "Use no instruction of one processor; the same pictures, slower")
+        ->group(group);
+    command.add_flag("--quiet", o.quiet, "Print only warnings and errors")->group(group);
+}
+
+}  // namespace
+
+std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
+    const auto options = std::make_shared<RenderOptions>();
+    command
+        .add_option("scene", options->scene,
+                    "glTF file (.gltf, .glb), or a folder that holds one of its name")
+        ->required()
+        ->type_name("SCENE");
+    add_image_options(command, *options);
+    add_model_options(command, *options);
+    add_work_options(command, *options);
+    return options;
+}
+
+RenderSettings settings_of(const RenderOptions& options) {
+    RenderSettings settings = options.settings;
+    settings.falloff = parse_falloff(options.rho);
+    settings.d_max = parse_max_distance(options.d_max);
+    return settings;
+}
+
+uint64_t parse_bytes(const std::string& text) {
+    static const std::map<char, double> units{{'K', 1024.0}, {'M', 1048576.0}, {'G', 1073741824.0}};
+    std::string number = text;
+    double unit = 1;
+    if (!number.empty() && (number.back() == 'B' || number.back() == 'b')) number.pop_back();
+    if (number.size() > 1 && (number.back() == 'i')) number.pop_back();
+    if (!number.empty()) {
+        const auto found =
+            units.find(static_cast<char>(std::toupper(static_cast<unsigned char>(number.back()))));
+        if (found != units.end()) {
+            unit = found->second;
+            number.pop_back();
+        }
+    }
+    double value = 0;
+    size_t used = 0;
+    try {
+        value = std::stod(number, &used);
+    } catch (const std::exception&) {
+        used = 0;
+    }
+    const double bytes = value * unit;
+    if (used == 0 || used != number.size() || !(bytes >= 1) || bytes > 1e15) {
+        throw InputError("--memory {}: give bytes, or a number with K, M or G, such as 256M", text);
+    }
+    return static_cast<uint64_t>(bytes);
+}
+
+}  // namespace obscura

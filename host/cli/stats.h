@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The figures of a run as JSON, for --stats.
+#pragma once
+
+#include <string>
+
+#include "device/selector.h"
+#include "scene/scene.h"
+#include "wavefront/render.h"
+
+namespace obscura {
+
+// Wall times around the render, seconds.
+struct RunSeconds {
+    double load = 0, write = 0, total = 0;
+};
+
+// path: a file, or "-" for standard output. Throws InputError.
+void write_stats(const std::string& path, const Scene& scene, const DeviceInfo& device,
+                 const RenderResult& result, const RunSeconds& seconds);
+
+}  // namespace obscura

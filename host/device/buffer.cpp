@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// See buffer.h.
+#include "device/buffer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "device/error.h"
+
+namespace obscura {
+
+namespace {
+
+// What an empty buffer holds, so that it has a handle.
+constexpr uint64_t SMALLEST_ALLOCATION_BYTES = 16;
+
+uint64_t allocation_bytes(uint64_t bytes) {
+    return std::max(bytes, SMALLEST_ALLOCATION_BYTES);
+}
+
+}  // namespace
+
+Buffer::Buffer(Device& device, std::string name, std::string category, uint64_t bytes)
+    : name_(std::move(name)), category_(std::move(category)), bytes_(bytes) {
+    const DeviceInfo& info = device.info();
+    if (bytes > info.max_allocation_bytes)
+        throw DeviceError(
+            "The buffer \"{}\" needs {} ({} bytes), but {} allows at most {} ({} bytes) in one buffer.",
+            name_, bytes_text(bytes), bytes, info.name, bytes_text(info.max_allocation_bytes),
+            info.max_allocation_bytes);
+    cl_int code = CL_SUCCESS;
+    handle_ = cl::Buffer(device.context(), CL_MEM_READ_WRITE, allocation_bytes(bytes), nullptr, &code);
+    if (code != CL_SUCCESS)
+        throw DeviceError(
+            "The buffer \"{}\" of {} can't be allocated on {} ({} are in use): clCreateBuffer failed with {} "
+            "({}).",
+            name_, bytes_text(bytes), info.name, bytes_text(device.memory().current_bytes()),
+            error_name(code), code);
+    device_ = &device;
+    device.memory().add(category_, allocation_bytes(bytes));
+}
+
+Buffer::~Buffer() {
+    release();
+}
+
+Buffer::Buffer(Buffer&& other) noexcept
+    : device_(std::exchange(other.device_, nullptr)),
+      name_(std::move(other.name_)),
+      category_(std::move(other.category_)),
+      bytes_(std::exchange(other.bytes_, 0)),
+      handle_(std::exchange(other.handle_, cl::Buffer())) {}
+
+Buffer& Buffer::operator=(Buffer&& other) noexcept {
+    if (this != &other) {
+        release();
+        device_ = std::exchange(other.device_, nullptr);
+        name_ = std::move(other.name_);
+        category_ = std::move(other.category_);
+        bytes_ = std::exchange(other.bytes_, 0);
+        handle_ = std::exchange(other.handle_, cl::Buffer());
+    }
+    return *this;
+}
+
+void Buffer::release() noexcept {
+    if (device_ != nullptr) device_->memory().remove(category_, allocation_bytes(bytes_));
+    device_ = nullptr;
+    handle_ = cl::Buffer();
+}
+
+void Buffer::check_range(uint64_t offset, uint64_t size) const {
+    OBSCURA_CHECK(device_ != nullptr, "buffer without memory");
+    OBSCURA_CHECK(offset <= bytes_ && size <= bytes_ - offset, "buffer \"{}\" of {} bytes, range {} + {}",
+                  name_, bytes_, offset, size);
+}
+
+void Buffer::write(std::span<const std::byte> source, uint64_t offset, Transfer transfer) {
+    check_range(offset, source.size());
+    if (source.empty()) return;
+    const cl_bool blocking = transfer == Transfer::blocking ? CL_TRUE : CL_FALSE;
+    check(device_->queue().enqueueWriteBuffer(handle_, blocking, offset, source.size(), source.data()),
+          "clEnqueueWriteBuffer", fmt::format("uploading \"{}\"", name_), device_->name());
+}
+
+void Buffer::read(std::span<std::byte> target, uint64_t offset, Transfer transfer) const {
+    check_range(offset, target.size());
+    if (target.empty()) return;
+    const cl_bool blocking = transfer == Transfer::blocking ? CL_TRUE : CL_FALSE;
+    check(device_->queue().enqueueReadBuffer(handle_, blocking, offset, target.size(), target.data()),
+          "clEnqueueReadBuffer", fmt::format("downloading \"{}\"", name_), device_->name());
+}
+
+void Buffer::clear() {
+    check_range(0, 0);
+    if (bytes_ == 0) return;
+    // The pattern is one byte, so that any size is a whole number of patterns.
+    check(device_->queue().enqueueFillBuffer(handle_, cl_uchar{0}, 0, bytes_), "clEnqueueFillBuffer",
+          fmt::format("clearing \"{}\"", name_), device_->name());
+}
+
+}  // namespace obscura

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opening a device: context, queue, and the few properties that decide how kernels are built and launched.
+#include "device/device.h"
+
+#include <cstdlib>
+#include <utility>
+
+#include "device/error.h"
+
+namespace obscura {
+
+namespace {
+
+cl::Device find_handle(const DeviceInfo& info) {
+    constexpr const char* STAGE = "opening the device";
+    std::vector<cl::Platform> platforms;
+    check(cl::Platform::get(&platforms), "clGetPlatformIDs", STAGE, info.name);
+    const auto platform_index = static_cast<size_t>(info.platform_index);
+    const auto device_index = static_cast<size_t>(info.device_index);
+    std::vector<cl::Device> devices;
+    if (platform_index < platforms.size())
+        check(platforms[platform_index].getDevices(CL_DEVICE_TYPE_ALL, &devices), "clGetDeviceIDs", STAGE,
+              info.name);
+    if (device_index >= devices.size())
+        throw DeviceError("{}: {} is gone since the devices were listed.", STAGE, info.name);
+    return devices[device_index];
+}
+
+}  // namespace
+
+Device::Device(cl::Device handle, DeviceInfo info) : handle_(std::move(handle)), info_(std::move(info)) {
+    constexpr const char* STAGE = "opening the device";
+    cl_int code = CL_SUCCESS;
+    context_ = cl::Context(handle_, nullptr, nullptr, nullptr, &code);
+    check(code, "clCreateContext", STAGE, info_.name);
+    queue_ = cl::CommandQueue(context_, handle_, CL_QUEUE_PROFILING_ENABLE, &code);
+    check(code, "clCreateCommandQueue", STAGE, info_.name);
+
+    cl_device_fp_config float_config = 0;
+    check(handle_.getInfo(CL_DEVICE_SINGLE_FP_CONFIG, &float_config), "clGetDeviceInfo", STAGE, info_.name);
+    correctly_rounded_division_ = (float_config & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+    size_t group_size = 0;
+    check(handle_.getInfo(CL_DEVICE_MAX_WORK_GROUP_SIZE, &group_size), "clGetDeviceInfo", STAGE, info_.name);
+    max_work_group_size_ = group_size;
+    compiles_at_launch_ = info_.platform == POCL_PLATFORM_NAME;
+}
+
+void Device::flush(std::string_view stage) const {
+    check(queue_.flush(), "clFlush", stage, info_.name);
+}
+
+void Device::finish(std::string_view stage) const {
+    check(queue_.finish(), "clFinish", stage, info_.name);
+}
+
+Device open_device(std::string_view selector) {
+    if (const char* const chosen = std::getenv("OBSCURA_DEVICE"); selector.empty() && chosen != nullptr)
+        selector = chosen;
+    const std::vector<DeviceInfo> devices = list_devices();
+    const DeviceInfo& info = devices[static_cast<size_t>(select_device(devices, selector))];
+    return Device(find_handle(info), info);
+}
+
+}  // namespace obscura

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "film/develop.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "shared/frame.h"
+
+namespace obscura {
+namespace {
+
+// Component of a f32x4 by index.
+float component(const f32x4& v, size_t i) {
+    return i == 0 ? v.x : i == 1 ? v.y : i == 2 ? v.z : v.w;
+}
+
+// Mean of a layer at a pixel; 0 where the layer isn't kept.
+class Means {
+  public:
+    Means(const FilmSums& film, size_t pixel_count) : film_(film), pixel_count_(pixel_count) {}
+
+    f32x4 operator()(uint32_t layer, size_t pixel) const {
+        const uint32_t plane = film_.planes[layer];
+        const uint64_t count = film_.samples + (pixel < film_.pixels_ahead ? 1 : 0);
+        if (plane == NO_PLANE || count == 0) return {0, 0, 0, 0};
+        const f32x4& sum = film_.sums[size_t{plane} * pixel_count_ + pixel];
+        const auto n = static_cast<float>(count);
+        return {sum.x / n, sum.y / n, sum.z / n, sum.w / n};
+    }
+
+  private:
+    const FilmSums& film_;
+    size_t pixel_count_;
+};
+
+const LayerInfo& layer_info(const std::string& name) {
+    const auto& table = layer_table();
+    const auto found = std::ranges::find_if(table, [&](const LayerInfo& info) { return name == info.name; });
+    OBSCURA_CHECK(found != table.end(), "no layer is called '{}'", name);
+    return *found;
+}
+
+// First component of the layer's value that the channels start at: ao.Y and Z live in the fourth.
+size_t first_component(const std::string& name) {
+    return name == "ao" || name == "Z" ? 3 : 0;
+}
+
+}  // namespace
+
+const std::vector<LayerInfo>& layer_table() {
+    static const std::vector<std::string> rgb{"R", "G", "B"};
+    static const std::vector<std::string> xyz{"X", "Y", "Z"};
+    static const std::vector<LayerInfo> table{
+        {LAYER_EMISSION, "emission", rgb, "lights and sky seen directly"},
+        {LAYER_DIRECT, "direct", rgb, "diffuse light straight from the lights"},
+        {LAYER_AMBIENT, "ambient", rgb, "R_d W I_A: the obscurances"},
+        {LAYER_SPECULAR_EMISSION, "specular.emission", rgb,
+         "lights and sky seen in reflections and through panes"},
+        {LAYER_SPECULAR_DIRECT, "specular.direct", rgb, "direct light seen in reflections and through panes"},
+        {LAYER_SPECULAR_AMBIENT, "specular.ambient", rgb,
+         "obscurances seen in reflections and through panes"},
+        {LAYER_OBSCURANCE, "obscurance", rgb, "W at the first hit with a diffuse part"},
+        {LAYER_OBSCURANCE, "ao", {"Y"}, "colourless W of the same rays: 1 open, 0 closed"},
+        {LAYER_POSITION, "P", xyz, "position of the first hit, m"},
+        {LAYER_POSITION, "Z", {"Z"}, "distance along the camera's axis, m"},
+        {LAYER_NORMAL, "N", xyz, "geometric normal of the first hit, towards the camera"},
+        {LAYER_SHADING, "Ns", xyz, "shading normal of the first hit, towards the camera"},
+        {LAYER_ALBEDO, "Albedo", rgb, "diffuse + specular albedo of the first hit"},
+    };
+    return table;
+}
+
+void develop_band(const FilmSums& film, std::span<const std::string> wanted, Image& image) {
+    const size_t planes = static_cast<size_t>(
+        std::ranges::count_if(film.planes, [](uint32_t plane) { return plane != NO_PLANE; }));
+    OBSCURA_CHECK(planes > 0 && film.sums.size() % planes == 0, "{} sums in {} planes", film.sums.size(),
+                  planes);
+    const size_t pixel_count = film.sums.size() / planes;
+    const Means mean(film, pixel_count);
+    if (image.layers.empty()) {
+        image.layers.push_back({"", {"R", "G", "B", "A"}, {}});
+        for (const std::string& name : wanted)
+            image.layers.push_back({name, layer_info(name).channels, {}});
+    }
+
+    std::vector<float>& beauty = image.layers[0].pixels;
+    for (size_t pixel = 0; pixel < pixel_count; ++pixel) {
+        f32x4 sum = mean(LAYER_EMISSION, pixel);
+        for (uint32_t layer = LAYER_EMISSION + 1; layer < BEAUTY_LAYERS; ++layer) {
+            const f32x4 value = mean(layer, pixel);
+            sum = {sum.x + value.x, sum.y + value.y, sum.z + value.z, sum.w};
+        }
+        beauty.insert(beauty.end(), {sum.x, sum.y, sum.z, sum.w});
+    }
+    for (size_t i = 0; i < wanted.size(); ++i) {
+        const LayerInfo& info = layer_info(wanted[i]);
+        const size_t first = first_component(wanted[i]);
+        std::vector<float>& pixels = image.layers[i + 1].pixels;
+        for (size_t pixel = 0; pixel < pixel_count; ++pixel) {
+            const f32x4 value = mean(info.layer, pixel);
+            for (size_t c = 0; c < info.channels.size(); ++c)
+                pixels.push_back(component(value, first + c));
+        }
+    }
+}
+
+}  // namespace obscura

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cameras of nodes, and the camera that frames a scene which has none. Scale and shear of the node are
+// removed, so that camera_to_world is rigid; glTF's aspectRatio, znear and zfar are not used: the picture's
+// size gives the aspect, and rays are not clipped.
+#include "scene/gltf_reader.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace obscura {
+
+namespace {
+
+// Rigid transform with the given position, looking along -backward, with +y towards up.
+M44d rigid(const V3d& right, const V3d& up, const V3d& backward, const V3d& position) {
+    return M44d(right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, backward.x, backward.y, backward.z, 0,
+                position.x, position.y, position.z, 1);
+}
+
+}  // namespace
+
+void append_camera(GltfReader& reader, const tinygltf::Node& node, const M44d& to_world) {
+    if (node.camera < 0) return;
+    const auto& cameras = reader.model.cameras;
+    if (static_cast<size_t>(node.camera) >= cameras.size())
+        reader.fail("node '" + node.name + "'", "camera {} does not exist; the file has {}.", node.camera,
+                    cameras.size());
+    const tinygltf::Camera& source = cameras[static_cast<size_t>(node.camera)];
+    const std::string place = gltf_place("camera", source.name, static_cast<size_t>(node.camera));
+
+    Camera camera;
+    camera.name = node.name.empty() ? source.name : node.name;
+    if (source.type == "orthographic") {
+        camera.orthographic = true;
+        camera.half_height = source.orthographic.ymag;
+        if (!(camera.half_height > 0) || !std::isfinite(camera.half_height))
+            reader.fail(place, "ymag must be positive, not {}.", camera.half_height);
+    } else {
+        camera.vertical_fov = source.perspective.yfov;
+        if (!(camera.vertical_fov > 0 && camera.vertical_fov < std::numbers::pi))
+            reader.fail(place, "yfov must be between 0 and pi, not {}.", camera.vertical_fov);
+    }
+    V3d up, backward;
+    to_world.multDirMatrix(V3d(0, 1, 0), up);
+    to_world.multDirMatrix(V3d(0, 0, 1), backward);
+    backward.normalize();
+    const V3d right = up.cross(backward).normalized();
+    const V3d position = to_world.translation();
+    if (!(right.length() > 0.5) || !std::isfinite(position.length()))
+        reader.fail(place, "its node's transform leaves it no direction or position.");
+    camera.camera_to_world = rigid(right, backward.cross(right), backward, position);
+    reader.scene.cameras.push_back(camera);
+}
+
+Camera default_camera(const Box3f& bounds) {
+    Camera camera;
+    camera.name = "default";
+    const V3d center = bounds.isEmpty() ? V3d(0, 0, 0) : 0.5 * (V3d(bounds.min) + V3d(bounds.max));
+    const double radius = bounds.isEmpty() ? 1 : (V3d(bounds.max) - center).length();
+    // Three-quarter view from the right and above; the bounding sphere just fits the picture's height.
+    const V3d backward = V3d(0.6, 0.45, 1).normalized();
+    const double distance = radius / std::sin(camera.vertical_fov / 2);
+    const V3d right = V3d(0, 1, 0).cross(backward).normalized();
+    camera.camera_to_world = rigid(right, backward.cross(right), backward, center + distance * backward);
+    return camera;
+}
+
+}  // namespace obscura

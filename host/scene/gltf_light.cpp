@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// KHR_lights_punctual. A node's scale does not change a light; photometric units are read as radiometric
+// ones.
+#include "scene/gltf_reader.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace obscura {
+
+namespace {
+
+const char* const EXTENSION = "KHR_lights_punctual";
+
+Rgb light_intensity(const GltfReader& reader, const std::string& place, const tinygltf::Light& light) {
+    if (!light.color.empty() && light.color.size() != 3)
+        reader.fail(place, "color must be a list of 3 numbers.");
+    Rgb intensity;
+    for (int channel = 0; channel < 3; ++channel) {
+        const double color = light.color.empty() ? 1 : light.color[static_cast<size_t>(channel)];
+        const auto value = static_cast<float>(color * light.intensity);
+        if (!(value >= 0) || !std::isfinite(value))
+            reader.fail(place, "its intensity {} and color {} must be finite and not negative.",
+                        light.intensity, color);
+        intensity[channel] = value;
+    }
+    return intensity;
+}
+
+void set_cone(const GltfReader& reader, const std::string& place, const tinygltf::SpotLight& spot,
+              PunctualLight& light) {
+    if (!(spot.innerConeAngle >= 0) || !(spot.innerConeAngle < spot.outerConeAngle) ||
+        !(spot.outerConeAngle <= std::numbers::pi / 2 + 1e-6))  // pi / 2 may be written as a rounded-up float
+        reader.fail(place, "its cone angles must be 0 <= inner < outer <= pi / 2, not {} and {}.",
+                    spot.innerConeAngle, spot.outerConeAngle);
+    light.cos_inner = static_cast<float>(std::cos(spot.innerConeAngle));
+    light.cos_outer = static_cast<float>(std::cos(spot.outerConeAngle));
+}
+
+}  // namespace
+
+void append_light(GltfReader& reader, const tinygltf::Node& node, const M44d& to_world) {
+    const tinygltf::Value* extension = find_extension(node.extensions, EXTENSION);
+    if (extension == nullptr) return;
+    const int index = index_member(reader, "node '" + node.name + "': " + EXTENSION, *extension, "light", -1);
+    const auto& lights = reader.model.lights;
+    if (index < 0 || static_cast<size_t>(index) >= lights.size())
+        reader.fail("node '" + node.name + "'", "light {} does not exist; the file has {}.", index,
+                    lights.size());
+    const tinygltf::Light& source = lights[static_cast<size_t>(index)];
+    const std::string place = gltf_place("light", source.name, static_cast<size_t>(index));
+
+    PunctualLight light;
+    light.name = node.name.empty() ? source.name : node.name;
+    light.intensity = light_intensity(reader, place, source);
+    if (!(source.range >= 0) || !std::isfinite(static_cast<float>(source.range)))
+        reader.fail(place, "its range {} must be positive.", source.range);
+    light.range = static_cast<float>(source.range);
+    light.position = V3f(to_world.translation());
+    V3d direction;
+    to_world.multDirMatrix(V3d(0, 0, -1), direction);
+    const double length = direction.length();
+    if (source.type == "point") {
+        light.type = LightType::point;
+    } else if (source.type == "spot") {
+        light.type = LightType::spot;
+        set_cone(reader, place, source.spot, light);
+    } else if (source.type == "directional") {
+        light.type = LightType::directional;
+    } else {
+        reader.fail(place, "its type '{}' is not point, spot or directional.", source.type);
+    }
+    if (light.type != LightType::point) {
+        if (!(length > 0)) reader.fail(place, "its node's transform leaves it no direction.");
+        light.direction = V3f(direction / length);
+    }
+    reader.scene.lights.push_back(light);
+}
+
+}  // namespace obscura

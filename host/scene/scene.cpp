@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Geometry of single triangles, and the decoding of colours. Corners are stored as float; differences of
+// floats are exact in double for all but extreme exponents, so areas and normals here are as good as the
+// stored geometry.
+#include "scene/scene.h"
+
+#include <cmath>
+
+namespace obscura {
+
+namespace {
+
+constexpr double SMOOTH_TOLERANCE = 1e-3;
+
+V3d edge_cross(const Scene& scene, uint32_t triangle) {
+    const V3d a(scene.corner(triangle, 0).position);
+    const V3d b(scene.corner(triangle, 1).position);
+    const V3d c(scene.corner(triangle, 2).position);
+    return (b - a).cross(c - a);
+}
+
+std::array<double, 256> make_srgb_table() {
+    std::array<double, 256> table{};
+    for (size_t code = 0; code < table.size(); ++code) {
+        const double encoded = static_cast<double>(code) / 255;
+        table[code] = encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+    }
+    return table;
+}
+
+}  // namespace
+
+V3d geometric_normal(const Scene& scene, uint32_t triangle) {
+    return edge_cross(scene, triangle).normalized();
+}
+
+double triangle_area(const Scene& scene, uint32_t triangle) {
+    return 0.5 * edge_cross(scene, triangle).length();
+}
+
+bool is_smooth(const Scene& scene, uint32_t triangle) {
+    const V3d n_geo = geometric_normal(scene, triangle);
+    bool differs = false;
+    for (int i = 0; i < 3; ++i) {
+        const V3d normal(scene.corner(triangle, i).normal);
+        if (normal == V3d(0, 0, 0)) return false;
+        if ((normal - n_geo).length() > SMOOTH_TOLERANCE) differs = true;
+    }
+    return differs;
+}
+
+double srgb_to_linear(uint8_t code) {
+    static const std::array<double, 256> table = make_srgb_table();
+    return table[code];
+}
+
+}  // namespace obscura

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// The distance setting of obscurance rays: text to value, and value to metres in a given scene.
+#include "scene/settings.h"
+
+#include "base/error.h"
+#include "base/log.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace obscura {
+
+namespace {
+
+// Outside this share of the scene's diagonal the setting is most often a mistake of units: obscurances then
+// see next to nothing, or nearly all of the scene.
+constexpr double SMALLEST_USUAL_SHARE = 0.005;
+constexpr double LARGEST_USUAL_SHARE = 1;
+
+double diagonal(const Box3f& bounds) {
+    return bounds.isEmpty() ? 0 : (V3d(bounds.max) - V3d(bounds.min)).length();
+}
+
+}  // namespace
+
+MaxDistance parse_max_distance(const std::string& text) {
+    if (text == "inf") return {std::numeric_limits<double>::infinity(), MaxDistance::Unit::infinite};
+    const bool percent = text.ends_with('%');
+    const char* end = text.data() + text.size() - (percent ? 1 : 0);
+    double value = 0;
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc() || stop != end || !std::isfinite(value) || value <= 0)
+        throw InputError(
+            "--dmax {}: expected a positive length in metres (1), a share of the scene's diagonal (50%) or "
+            "inf.",
+            text);
+    return {value, percent ? MaxDistance::Unit::percent : MaxDistance::Unit::metres};
+}
+
+std::string max_distance_text(const MaxDistance& distance) {
+    switch (distance.unit) {
+        case MaxDistance::Unit::metres:
+            return fmt::format("{}", distance.value);
+        case MaxDistance::Unit::percent:
+            return fmt::format("{}%", distance.value);
+        case MaxDistance::Unit::infinite:
+            return "inf";
+    }
+    OBSCURA_CHECK(false, "unit {}", static_cast<int>(distance.unit));
+}
+
+double resolve_max_distance(const MaxDistance& distance, const Box3f& bounds) {
+    if (distance.unit == MaxDistance::Unit::infinite) return std::numeric_limits<double>::infinity();
+    const double size = diagonal(bounds);
+    if (distance.unit == MaxDistance::Unit::percent && size == 0)
+        throw InputError("--dmax {}: the scene has no extent to take a share of.",
+                         max_distance_text(distance));
+    const double metres =
+        distance.unit == MaxDistance::Unit::percent ? distance.value / 100 * size : distance.value;
+    const double share = size > 0 ? metres / size : 0;
+    if (size > 0 && (share < SMALLEST_USUAL_SHARE || share > LARGEST_USUAL_SHARE))
+        log_warning("--dmax {} is {:.3g} % of the scene's diagonal of {:.4g} m; 0.5 % to 100 % is usual.",
+                    max_distance_text(distance), 100 * share, size);
+    return metres;
+}
+
+}  // namespace obscura

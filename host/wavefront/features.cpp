@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wavefront/features.h"
+
+#include <cctype>
+#include <map>
+#include <sstream>
+
+namespace obscura {
+namespace {
+
+const std::map<std::string, bool Needs::*, std::less<>>& need_flags() {
+    static const std::map<std::string, bool Needs::*, std::less<>> flags{
+        {"textures", &Needs::textures},
+        {"smooth_normals", &Needs::smooth_normals},
+        {"glossy", &Needs::glossy},
+        {"mirror", &Needs::mirror},
+        {"transmission", &Needs::transmission},
+        {"area_lights", &Needs::area_lights},
+        {"point_lights", &Needs::point_lights},
+        {"spot_lights", &Needs::spot_lights},
+        {"directional_lights", &Needs::directional_lights},
+        {"emission", &Needs::emission},
+        {"background", &Needs::background},
+        {"bleeding", &Needs::bleeding},
+        {"obscurance", &Needs::obscurance},
+        {"ambient", &Needs::ambient},
+        {"specular_paths", &Needs::specular_paths},
+    };
+    return flags;
+}
+
+std::string define(std::string name) {
+    for (char& c : name)
+        c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    return " -D NEED_" + name + "=1";
+}
+
+std::string falloff_options(FalloffKind kind, bool all) {
+    static const std::map<FalloffKind, std::string> names{
+        {FalloffKind::linear, "falloff_linear"},   {FalloffKind::sqrt, "falloff_sqrt"},
+        {FalloffKind::cbrt, "falloff_cbrt"},       {FalloffKind::exp, "falloff_exp"},
+        {FalloffKind::expjump, "falloff_expjump"}, {FalloffKind::pow, "falloff_pow"},
+    };
+    std::string options;
+    for (const auto& [one, name] : names) {
+        if (all || one == kind) options += define(name);
+    }
+    return options;
+}
+
+}  // namespace
+
+std::string stage_options(Stage stage, const Needs& needs, bool all, bool portable) {
+    std::string options = portable ? " -D OBSCURA_PORTABLE" : "";
+    std::istringstream features{std::string(STAGES[static_cast<uint32_t>(stage)].features)};
+    for (std::string feature; features >> feature;) {
+        if (feature == "falloff") {
+            options += falloff_options(needs.falloff, all);
+        } else if (needs.*need_flags().at(feature)) {
+            options += define(feature);
+        }
+    }
+    return options;
+}
+
+std::vector<Stage> needed_stages(const Needs& needs) {
+    std::vector<Stage> stages{Stage::camera, Stage::trace, Stage::shade};
+    if (needs.direct()) stages.push_back(Stage::shadow);
+    if (needs.obscurance) stages.push_back(Stage::obscurance);
+    if (needs.direct() || needs.ambient) stages.push_back(Stage::gather);
+    stages.push_back(Stage::film);
+    return stages;
+}
+
+}  // namespace obscura

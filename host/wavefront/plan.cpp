@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wavefront/plan.h"
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "shared/wavefront.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace obscura {
+namespace {
+
+constexpr uint64_t LANE_BYTES = sizeof(f32x4);
+// Below this a wave is all launch overhead.
+constexpr uint64_t MIN_WAVE = 64;
+// Result indices are 32 bits wide.
+constexpr uint64_t MAX_INDEX = 0x7fffffff;
+
+uint64_t path_lanes(const QueueShape& shape) {
+    return PATH_LAYERS + shape.layer_planes + uint64_t{shape.light_samples} * shape.light_lobes;
+}
+
+}  // namespace
+
+PixelRect crop_pixels(const CropWindow& crop, uint32_t width, uint32_t height) {
+    const auto edge = [](double fraction, uint32_t size) {
+        return static_cast<uint32_t>(std::clamp(std::ceil(fraction * size), 0.0, static_cast<double>(size)));
+    };
+    const PixelRect rect{edge(crop.x0, width), edge(crop.y0, height), edge(crop.x1, width),
+                         edge(crop.y1, height)};
+    if (rect.x0 >= rect.x1 || rect.y0 >= rect.y1) {
+        throw InputError("crop window {},{},{},{} holds no pixel of {} x {}", crop.x0, crop.x1, crop.y0,
+                         crop.y1, width, height);
+    }
+    return rect;
+}
+
+uint64_t bytes_per_slot(const QueueShape& shape) {
+    const uint64_t ray_queues = shape.specular_paths ? 2 : 1;
+    const uint64_t lanes = ray_queues * RAY_LANES + path_lanes(shape) +
+                           uint64_t{shape.light_samples} * (SHADOW_LANES + 1) +
+                           (shape.obscurance_rays > 0 ? POINT_LANES + uint64_t{shape.obscurance_rays} : 0);
+    return lanes * LANE_BYTES;
+}
+
+uint64_t largest_bytes_per_slot(const QueueShape& shape) {
+    return LANE_BYTES * std::max({uint64_t{RAY_LANES}, path_lanes(shape), uint64_t{shape.obscurance_rays},
+                                  uint64_t{shape.light_samples} * SHADOW_LANES});
+}
+
+uint32_t wave_capacity(const QueueShape& shape, uint64_t wanted, uint64_t memory_bytes,
+                       uint64_t max_allocation_bytes, uint64_t sample_count) {
+    const uint64_t fan_out =
+        std::max({uint64_t{1}, uint64_t{shape.light_samples}, uint64_t{shape.obscurance_rays}});
+    const uint64_t fits =
+        std::min({memory_bytes / bytes_per_slot(shape), max_allocation_bytes / largest_bytes_per_slot(shape),
+                  MAX_INDEX / fan_out});
+    if (fits < MIN_WAVE) {
+        throw InputError(
+            "{} of queue memory hold {} camera samples at {} each, {} are the least: raise --memory or "
+            "lower --obscurance-rays or --light-samples",
+            bytes_text(memory_bytes), fits, bytes_text(bytes_per_slot(shape)), MIN_WAVE);
+    }
+    return static_cast<uint32_t>(
+        std::clamp(std::min(wanted, fits), uint64_t{1}, std::max(sample_count, MIN_WAVE)));
+}
+
+Wave wave_at(uint64_t index, uint32_t capacity, uint32_t pixel_count, uint32_t spp) {
+    const uint64_t total = uint64_t{pixel_count} * spp;
+    const uint64_t first = index * capacity;
+    if (first >= total) return {};
+    return {static_cast<uint32_t>(first % pixel_count), static_cast<uint32_t>(first / pixel_count),
+            static_cast<uint32_t>(std::min<uint64_t>(capacity, total - first))};
+}
+
+std::vector<PixelRect> film_bands(const PixelRect& rect, uint32_t layer_planes, uint64_t max_film_bytes) {
+    const uint64_t row_bytes = uint64_t{rect.width()} * layer_planes * LANE_BYTES;
+    const auto rows = static_cast<uint32_t>(
+        std::clamp<uint64_t>(max_film_bytes / std::max<uint64_t>(row_bytes, 1), 1, rect.height()));
+    std::vector<PixelRect> bands;
+    for (uint32_t y = rect.y0; y < rect.y1; y += rows) {
+        bands.push_back({rect.x0, y, rect.x1, std::min(y + rows, rect.y1)});
+    }
+    return bands;
+}
+
+}  // namespace obscura

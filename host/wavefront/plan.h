@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a picture is cut into waves: pure arithmetic, tested without a device. The cut changes memory and speed,
+// never a bit of the picture.
+#pragma once
+
+#include "scene/settings.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace obscura {
+
+// Pixels [x0, x1) x [y0, y1) of the full picture.
+struct PixelRect {
+    uint32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    uint32_t width() const { return x1 - x0; }
+    uint32_t height() const { return y1 - y0; }
+    uint32_t pixel_count() const { return width() * height(); }
+};
+
+// Throws InputError if the window holds no pixel.
+PixelRect crop_pixels(const CropWindow& crop, uint32_t width, uint32_t height);
+
+// What one path slot needs, and what may be used.
+struct QueueShape {
+    uint32_t layer_planes = 0;     // kept layers
+    uint32_t light_samples = 0;    // per path: L for each group of lights
+    uint32_t light_lobes = 1;      // contributions per light sample
+    uint32_t obscurance_rays = 0;  // K, 0 without obscurances
+    bool specular_paths = false;   // a second ray queue
+};
+
+// Bytes of all queues per path slot, and of the largest single buffer per slot.
+uint64_t bytes_per_slot(const QueueShape& shape);
+uint64_t largest_bytes_per_slot(const QueueShape& shape);
+
+// Path slots of a wave: as many as asked, as the memory allows, as one allocation allows, never more than there are
+// samples. Throws InputError if not even 64 slots fit.
+uint32_t wave_capacity(const QueueShape& shape, uint64_t wanted, uint64_t memory_bytes,
+                       uint64_t max_allocation_bytes, uint64_t sample_count);
+
+// A run of camera samples in the order "all pixels for one pass, then the next pass".
+struct Wave {
+    uint32_t first_pixel = 0;
+    uint32_t first_pass = 0;
+    uint32_t count = 0;
+};
+
+// Wave number `index` of the run; count 0 past the end.
+Wave wave_at(uint64_t index, uint32_t capacity, uint32_t pixel_count, uint32_t spp);
+
+// Horizontal bands of rect whose film fits into max_film_bytes; one band in nearly every render.
+std::vector<PixelRect> film_bands(const PixelRect& rect, uint32_t layer_planes, uint64_t max_film_bytes);
+
+}  // namespace obscura

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wavefront/profiler.h"
+
+#include <algorithm>
+#include <ranges>
+
+#include "device/error.h"
+
+namespace obscura {
+
+void Profiler::record(const std::string& row, uint64_t items, const cl::Event& event) {
+    pending_.push_back({row, items, event});
+}
+
+void Profiler::set_items(const std::string& row, uint64_t items) {
+    const auto latest =
+        std::ranges::find(pending_.rbegin(), pending_.rend(), row, [](const Pending& p) { return p.row; });
+    if (latest != pending_.rend()) latest->items = items;
+}
+
+void Profiler::collect() {
+    for (const Pending& launch : pending_) {
+        cl_ulong start = 0, end = 0;
+        check(launch.event.getProfilingInfo(CL_PROFILING_COMMAND_START, &start), "clGetEventProfilingInfo",
+              launch.row);
+        check(launch.event.getProfilingInfo(CL_PROFILING_COMMAND_END, &end), "clGetEventProfilingInfo",
+              launch.row);
+        StageProfile& row = rows_[launch.row];
+        ++row.launches;
+        row.items += launch.items;
+        row.ms += static_cast<double>(end - start) * 1e-6;
+    }
+    pending_.clear();
+}
+
+}  // namespace obscura

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Times of the kernels, from OpenCL's own events: the only timing in the wavefront.
+#pragma once
+
+#include "device/opencl.h"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace obscura {
+
+struct StageProfile {
+    uint64_t launches = 0;
+    uint64_t items = 0;
+    double ms = 0;  // on the device, start to end
+};
+
+class Profiler {
+  public:
+    // row: "trace_camera", "shade" ...; items: work of the launch as its stage counts it.
+    void record(const std::string& row, uint64_t items, const cl::Event& event);
+    // Replaces the item count of the row's latest launch, once the device has told it.
+    void set_items(const std::string& row, uint64_t items);
+    // Reads the times of finished launches. Call when the queue is idle.
+    void collect();
+
+    const std::map<std::string, StageProfile>& rows() const { return rows_; }
+
+  private:
+    struct Pending {
+        std::string row;
+        uint64_t items;
+        cl::Event event;
+    };
+    std::vector<Pending> pending_;
+    std::map<std::string, StageProfile> rows_;
+};
+
+}  // namespace obscura

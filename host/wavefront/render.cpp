@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wavefront/render.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/error.h"
+#include "bvh/bvh.h"
+#include "film/develop.h"
+#include "sampling/sample_order.h"
+#include "wavefront/features.h"
+#include "wavefront/frame.h"
+
+namespace obscura {
+namespace {
+
+class Stopwatch {
+  public:
+    double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point start_ = Clock::now();
+};
+
+StageKernels prepare_kernels(ProgramLibrary& library, const Needs& needs, const RenderJob& job) {
+    const bool all = job.settings.needs == NeedsMode::all;
+    std::vector<KernelRequest> requests;
+    const std::vector<Stage> stages = needed_stages(needs);
+    for (const Stage stage : stages) {
+        requests.push_back({std::string(stage_name(stage)), stage_options(stage, needs, all, job.portable)});
+    }
+    library.prepare(requests);
+    StageKernels kernels;
+    for (size_t i = 0; i < stages.size(); ++i) {
+        kernels[static_cast<uint32_t>(stages[i])] = library.kernel(requests[i]);
+    }
+    return kernels;
+}
+
+QueueShape queue_shape(const Needs& needs, const RenderSettings& settings, const LayerPlanes& planes) {
+    const bool punctual = needs.point_lights || needs.spot_lights || needs.directional_lights;
+    QueueShape shape;
+    shape.layer_planes = plane_count(planes);
+    shape.light_samples = settings.light_samples * ((needs.area_lights ? 1u : 0u) + (punctual ? 1u : 0u));
+    shape.light_lobes = needs.glossy ? 2 : 1;
+    shape.obscurance_rays = needs.obscurance ? settings.obscurance_rays : 0;
+    shape.specular_paths = needs.specular_paths;
+    return shape;
+}
+
+std::vector<uint32_t> wanted_layers(const std::vector<std::string>& names) {
+    std::vector<uint32_t> layers;
+    for (const LayerInfo& info : layer_table()) {
+        if (std::ranges::find(names, info.name) != names.end()) layers.push_back(info.layer);
+    }
+    return layers;
+}
+
+void describe(const RenderJob& job, const RenderSettings& settings, const Device& device,
+              RenderResult& result) {
+    const Radiometry& radiometry = result.radiometry;
+    auto& attributes = result.image.attributes;
+    attributes["software"] = std::string("obscura " OBSCURA_VERSION);
+    attributes["scene"] = job.scene.name;
+    attributes["camera"] = select_camera(job.scene, settings).name;
+    attributes["worldToCamera"] = select_camera(job.scene, settings).camera_to_world.inverse();
+    attributes["averageReflectivity"] = radiometry.average_reflectivity;
+    attributes["ambientIntensity"] = resolve_ambient(radiometry, settings);
+    attributes["falloff"] = falloff_text(settings.falloff);
+    attributes["maxDistance"] = result.d_max;
+    attributes["samplesPerPixel"] = int64_t{settings.spp};
+    attributes["obscuranceRays"] = int64_t{settings.obscurance_rays};
+    attributes["seed"] = static_cast<int64_t>(settings.seed);
+    attributes["sampler"] = std::string(sampler_name(settings.sampler));
+    attributes["bleeding"] = std::string(settings.bleeding ? "on" : "off");
+    attributes["device"] = device.name();
+    attributes["renderTimeSeconds"] = result.seconds.render;
+    attributes["complete"] = std::string(result.complete ? "yes" : "no");
+}
+
+std::map<std::string, uint64_t> peak_bytes(const Device& device) {
+    std::map<std::string, uint64_t> bytes;
+    for (const char* category : {"scene", "bvh", "queues", "film"}) {
+        bytes[category] = device.memory().peak_bytes(category);
+    }
+    bytes["peak_device"] = device.memory().peak_bytes();
+    return bytes;
+}
+
+}  // namespace
+
+RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJob& job,
+                          const RenderCallback& after_wave) {
+    RenderResult result;
+    RenderSettings settings = with_default_sky(job.scene, job.settings);
+    settings.sampler = resolve_sampler(settings);
+    result.settings = settings;
+    result.d_max = resolve_max_distance(settings.d_max, job.scene.bounds);
+    result.radiometry = compute_radiometry(job.scene);
+    result.needs = analyse_needs(job.scene, settings);
+    const LayerPlanes planes = assign_planes(result.needs, wanted_layers(job.layers));
+    const PixelRect rect = crop_pixels(settings.crop, settings.width, settings.height);
+
+    const Stopwatch build_watch;
+    const Bvh bvh = build_bvh(job.scene);
+    result.seconds.build = build_watch.seconds();
+    const Stopwatch compile_watch;
+    const StageKernels kernels = prepare_kernels(library, result.needs, job);
+    result.seconds.compile = compile_watch.seconds();
+
+    const Stopwatch upload_watch;
+    const SceneArrays arrays = make_scene_arrays(job.scene, settings.filter);
+    const SceneBuffers scene = upload_scene(device, arrays, bvh);
+    const uint64_t max_allocation = device.info().max_allocation_bytes;
+    const QueueShape shape = queue_shape(result.needs, settings, planes);
+    const std::vector<PixelRect> bands = film_bands(rect, shape.layer_planes, max_allocation);
+    const uint64_t sample_count = uint64_t{bands.front().pixel_count()} * settings.spp;
+    result.wave_capacity = wave_capacity(shape, job.wave_size, job.queue_bytes, max_allocation, sample_count);
+    Queues queues = allocate_queues(device, shape, result.wave_capacity, bands.front().pixel_count(),
+                                    bit_reversed_order(settings.spp));
+    result.seconds.upload = upload_watch.seconds();
+
+    result.image.full_width = static_cast<int32_t>(settings.width);
+    result.image.full_height = static_cast<int32_t>(settings.height);
+    result.image.x0 = static_cast<int32_t>(rect.x0);
+    result.image.y0 = static_cast<int32_t>(rect.y0);
+    result.image.x1 = static_cast<int32_t>(rect.x1);
+    result.image.y1 = static_cast<int32_t>(rect.y1);
+
+    const Stopwatch render_watch;
+    Profiler profiler;
+    Scheduler scheduler(device, kernels, scene, queues, library.local_size(), profiler);
+    scheduler.observe(job.observer);
+    uint64_t pixels_before = 0;
+    for (const PixelRect& band : bands) {
+        const Frame frame = make_frame({job.scene, settings, result.radiometry, result.needs, planes,
+                                        static_cast<uint32_t>(arrays.area_lights.size()),
+                                        static_cast<uint32_t>(arrays.point_lights.size())},
+                                       band, result.wave_capacity);
+        const uint64_t band_samples = uint64_t{band.pixel_count()} * settings.spp;
+        const auto report = [&](uint64_t done, const RayCounts& rays) {
+            const uint64_t all = uint64_t{rect.pixel_count()} * settings.spp;
+            const uint64_t finished = pixels_before * settings.spp + done;
+            return after_wave(static_cast<double>(finished) / static_cast<double>(all), rays) ||
+                   finished == all;
+        };
+        const uint64_t done = result.complete ? scheduler.render(frame, report) : 0;
+        result.complete = result.complete && done == band_samples;
+        std::vector<f32x4> sums(size_t{band.pixel_count()} * shape.layer_planes);
+        if (done > 0) queues.film.download(sums);
+        develop_band({planes, sums, done / band.pixel_count(), done % band.pixel_count()}, job.layers,
+                     result.image);
+        pixels_before += band.pixel_count();
+    }
+    result.seconds.render = render_watch.seconds();
+    result.rays = scheduler.rays();
+    result.profile = profiler.rows();
+    result.bytes = peak_bytes(device);
+    describe(job, settings, device, result);
+    return result;
+}
+
+}  // namespace obscura

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// A whole render: scene and settings in, picture and figures out. The command line and the tests both come in here.
+#pragma once
+
+#include "device/program.h"
+#include "film/image.h"
+#include "scene/needs.h"
+#include "scene/radiometry.h"
+#include "scene/scene.h"
+#include "scene/settings.h"
+#include "wavefront/profiler.h"
+#include "wavefront/scheduler.h"
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace obscura {
+
+constexpr uint64_t DEFAULT_QUEUE_BYTES = uint64_t{256} << 20;  // leaves room on a 1 GiB device
+constexpr uint64_t DEFAULT_WAVE_SIZE = uint64_t{1} << 17;      // camera samples
+
+struct RenderJob {
+    const Scene& scene;
+    RenderSettings settings;
+    std::vector<std::string> layers;  // beside beauty: names of film/develop.h
+    uint64_t queue_bytes = DEFAULT_QUEUE_BYTES;
+    uint64_t wave_size = DEFAULT_WAVE_SIZE;
+    bool portable = false;        // kernels without instructions of one processor
+    DepthObserver observer = {};  // optional
+};
+
+// Wall times, seconds.
+struct RenderSeconds {
+    double build = 0;    // BVH
+    double compile = 0;  // kernels, cached or not
+    double upload = 0;   // scene to the device, queues
+    double render = 0;
+};
+
+struct RenderResult {
+    Image image;  // its attributes are filled
+    RenderSeconds seconds;
+    RayCounts rays;
+    std::map<std::string, StageProfile> profile;
+    Radiometry radiometry;
+    Needs needs;
+    RenderSettings settings;  // with the sampler and the sky that were chosen
+    double d_max = 0;         // m
+    uint32_t wave_capacity = 0;
+    bool complete = true;                   // false: stopped early, pixels have fewer samples
+    std::map<std::string, uint64_t> bytes;  // device memory at its peak: scene bvh queues film peak_device
+};
+
+// fraction of the samples done; false stops the render after the current wave.
+using RenderCallback = std::function<bool(double fraction, const RayCounts& rays)>;
+
+RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJob& job,
+                          const RenderCallback& after_wave);
+
+}  // namespace obscura

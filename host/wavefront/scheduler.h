@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// The loop: waves of camera samples through the stages until every pixel has all its samples.
+#pragma once
+
+#include "device/program.h"
+#include "device/scene_buffers.h"
+#include "shared/frame.h"
+#include "shared/wavefront.h"
+#include "wavefront/plan.h"
+#include "wavefront/profiler.h"
+#include "wavefront/queues.h"
+#include "wavefront/stages.h"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <utility>
+
+namespace obscura {
+
+struct RayCounts {
+    uint64_t camera = 0, shadow = 0, glossy = 0, obscurance = 0;
+    uint64_t total() const { return camera + shadow + glossy + obscurance; }
+};
+
+// Called after each wave with the samples finished so far and the rays traced; false stops the render there.
+using WaveCallback = std::function<bool(uint64_t samples_done, const RayCounts& rays)>;
+
+// One depth of a wave, seen after its kernels ran: queues.rays still holds its rays with their hits.
+struct DepthView {
+    uint32_t depth;
+    uint32_t ray_count, shadow_count, point_count;
+};
+// Looks at the queues between two depths, for checks that replay the real work of a render.
+using DepthObserver = std::function<void(const DepthView&, const Frame&, const Queues&)>;
+
+// One kernel per stage; those that the scene doesn't need are empty.
+using StageKernels = std::array<cl::Kernel, STAGE_COUNT>;
+
+class Scheduler {
+  public:
+    Scheduler(Device& device, const StageKernels& kernels, const SceneBuffers& scene, Queues& queues,
+              uint32_t local_size, Profiler& profiler);
+
+    // Renders the frame's pixels into queues.film, which holds their sums afterwards. Returns the samples done: all, or
+    // fewer if after_wave stopped it. Throws DeviceError when a kernel reports a failure.
+    uint64_t render(const Frame& frame, const WaveCallback& after_wave);
+
+    const RayCounts& rays() const { return rays_; }
+    void observe(DepthObserver observer) { observer_ = std::move(observer); }
+
+  private:
+    void run_wave(const Frame& frame, const Wave& wave);
+    // One depth of a wave's paths; the number of rays that go on.
+    uint32_t run_depth(const Frame& frame, uint32_t ray_count, uint32_t depth);
+    void check_status(const std::array<uint32_t, STATUS_WORDS>& status) const;
+    template <typename... Args>
+    void run(Stage stage, const char* row, uint64_t item_count, const Args&... args);
+
+    Device& device_;
+    const StageKernels& kernels_;
+    const SceneBuffers& scene_;
+    Queues& queues_;
+    uint32_t local_size_;
+    Profiler& profiler_;
+    DepthObserver observer_;
+    RayCounts rays_;
+};
+
+}  // namespace obscura

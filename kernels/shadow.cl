@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stage shadow: is a light sample seen?
+//   Reads    shadow ray i, guarded by the device's own count
+//   Writes   visibility[result index of ray i]: rgb transmittance, 0 when something opaque is in the way
+#include "lib/layers.clh"
+#include "lib/pane.clh"
+#include "lib/status.clh"
+
+// Share of light that reaches the origin, per channel: the product over the panes in between, 0 at the first opaque
+// surface.
+inline float3 transmittance(global const BvhNode* nodes, global const TriangleBlock* blocks,
+                            global const SceneTriangle* triangles, global const SceneMaterial* materials,
+                            global const uchar4* texels, global const float* tables, float3 origin,
+                            float3 direction, float t_light, bool* overflow) {
+    const bool any_hit = !NEED_TRANSMISSION;
+    const float3 unit = normalize(direction);
+    const float3 target = origin + direction;
+    float3 result = (float3)(1.0f);
+    for (int segment = 0; segment < MAX_SEGMENTS; ++segment) {
+        const Hit hit = traverse(nodes, blocks, origin, direction, t_light, any_hit);
+        *overflow = isnan(hit.t);
+        if (hit.primitive == NO_PRIMITIVE) return result;
+        if (any_hit || *overflow) return (float3)(0.0f);
+        global const SceneTriangle* triangle = triangles + hit.primitive;
+        global const SceneMaterial* material = materials + triangle->ids.x;
+        if (!is_pane(material)) return (float3)(0.0f);
+        const Surface s = make_surface(triangle, hit.u, hit.v, direction);
+        result *= pane_transmittance(material, base_color(triangle, material, texels, tables, hit.u, hit.v),
+                                     -dot(unit, s.n_geo));
+        origin = s.position - s.offset * s.n_geo;
+        if (t_light == 1.0f) direction = target - origin;
+    }
+    return (float3)(0.0f);
+}
+
+kernel void shadow(global const BvhNode* nodes, global const TriangleBlock* blocks,
+                   global const SceneTriangle* triangles, global const SceneMaterial* materials,
+                   global const uchar4* texels, global const float* tables, global const float4* shadow_rays,
+                   global float4* visibility, global uint* counters, uint shadow_capacity) {
+    const uint i = (uint)get_global_id(0);
+    if (i >= counters[COUNT_SHADOWS]) return;
+    const float4 origin = shadow_rays[(size_t)SHADOW_ORIGIN * shadow_capacity + i];
+    const float4 direction = shadow_rays[(size_t)SHADOW_DIRECTION * shadow_capacity + i];
+    bool overflow;
+    const float3 passed = transmittance(nodes, blocks, triangles, materials, texels, tables, origin.xyz,
+                                        direction.xyz, direction.w, &overflow);
+    if (overflow) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_SHADOW, i);
+    visibility[as_uint(origin.w)] = (float4)(passed, 0.0f);
+}

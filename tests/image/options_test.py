@@ -1,0 +1,212 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# Every option of `obscura render` changes something. Each is tried against a base render of a small room that
+# has what the options act on: an area light and a point light, coloured walls, rough metal, varnish, a mirror,
+# two cameras. An option that the help names and this file doesn't is a failure.
+import base64
+import json
+import os
+import pathlib
+import re
+import struct
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.environ["OBSCURA_PROGRAM"]
+# All features are compiled in, so that options change values and not programs: one compilation for all cases.
+BASE = {"--width": "24", "--height": "18", "--spp": "4", "--obscurance-rays": "2", "--needs": "all"}
+
+# Spellings of one option -> arguments that change the picture. Empty lists are covered by a test of their own.
+CHANGES_PICTURE = {
+    "--spp --samples-per-pixel": ["--spp", "5"],
+    "--obscurance-rays --ao-samples": ["--obscurance-rays", "3"],
+    "--rho --falloff": ["--rho", "sqrt"],
+    "--dmax --ao-distance": ["--dmax", "50%"],
+    "--ambient": ["--ambient", "constant"],
+    "--bleeding": ["--bleeding", "off"],
+    "--no-direct": ["--no-direct"],
+    "--no-specular": ["--no-specular"],
+    "--no-obscurance": ["--no-obscurance"],
+    "--light-samples": ["--light-samples", "2"],
+    "--roulette": ["--roulette", "off"],
+    "--filter": ["--filter", "gauss"],
+    "--background": ["--background", "1,2,3"],
+    "--ambient-light": ["--ambient-light", "1,2,3"],
+    "--ambient-scale": ["--ambient-scale", "2"],
+    "--max-depth": ["--max-depth", "1"],
+    "--seed": ["--seed", "1"],
+    "--sampler": ["--sampler", "random"],
+    "--camera": ["--camera", "side"],
+    "--exr-half": ["--exr-half"],
+}
+# These change how the picture is made, not the picture.
+KEEPS_PICTURE = {
+    "--memory": ["--memory", "256K"],
+    "--wave-size": ["--wave-size", "64"],
+    "--local-size": ["--local-size", "32"],
+    "--portable-kernels": ["--portable-kernels"],
+    "--needs": ["--needs", "auto"],
+}
+# Each has its own test below.
+OTHERS = {
+    "--width", "--height", "--cropwindow", "--layers", "--preview", "--exposure", "--stats", "--quiet", "--device",
+    "--output --outfile",
+}
+
+
+def write_room(path):
+    """A room of 4 x 3 x 4 m, open towards the camera; y is up."""
+    quads = [  # material, corner, edge, edge: the normal is edge x edge
+        (0, (-2, 0, -2), (0, 0, 4), (4, 0, 0)),  # floor
+        (0, (-2, 3, -2), (4, 0, 0), (0, 0, 4)),  # ceiling
+        (1, (-2, 0, -2), (0, 3, 0), (0, 0, 4)),  # left wall, red
+        (5, (2, 0, -2), (0, 0, 4), (0, 3, 0)),  # right wall, varnished: a weak reflection
+        (3, (-2, 0, -2), (4, 0, 0), (0, 3, 0)),  # back wall: a mirror
+        (2, (-1, 0.2, -1), (0.3, 0, 1), (1, 0.6, 0)),  # a rough metal sheet above the floor
+        (4, (-0.5, 2.9, -0.5), (1, 0, 0), (0, 0, 1)),  # lamp
+    ]
+    positions = b""
+    for _, corner, a, b in quads:
+        points = [corner, *(tuple(map(sum, zip(corner, edge))) for edge in (a, b)), tuple(map(sum, zip(corner, a, b)))]
+        positions += b"".join(struct.pack("<3f", *points[i]) for i in (0, 1, 3, 0, 3, 2))
+    matte = {"KHR_materials_specular": {"specularFactor": 0}}
+
+    def material(color, metallic, roughness, **more):
+        pbr = {"baseColorFactor": [*color, 1], "metallicFactor": metallic, "roughnessFactor": roughness}
+        return {"pbrMetallicRoughness": pbr, "doubleSided": True, **more}
+
+    perspective = {"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.01}}
+    gltf = {
+        "asset": {"version": "2.0"},
+        "extensionsUsed": ["KHR_lights_punctual", "KHR_materials_specular"],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 20}]}},
+        "scene": 0,
+        "scenes": [{"nodes": list(range(len(quads) + 3))}],
+        "nodes": [{"mesh": i} for i in range(len(quads))] + [
+            {"camera": 0, "name": "front", "translation": [0, 1.5, 5]},
+            {"camera": 1, "name": "side", "translation": [0.5, 1.2, 5]},
+            {"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [1, 2, 0]},
+        ],
+        "cameras": [{"name": "front", **perspective}, {"name": "side", **perspective}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": i}, "material": quad[0]}]} for i, quad in enumerate(quads)],
+        "materials": [
+            material((0.7, 0.7, 0.7), 0, 1, extensions=matte),
+            material((0.8, 0.1, 0.1), 0, 1, extensions=matte),
+            material((0.9, 0.7, 0.3), 1, 0.4),
+            material((0.9, 0.9, 0.9), 1, 0),
+            material((0, 0, 0), 0, 1, extensions=matte, emissiveFactor=[1, 1, 1]),
+            material((0.2, 0.3, 0.7), 0, 0.3),
+        ],
+        "accessors": [], "bufferViews": [],
+        "buffers": [{"byteLength": len(positions),
+                     "uri": "data:application/octet-stream;base64," + base64.b64encode(positions).decode()}],
+    }
+    for i in range(len(quads)):
+        points = list(struct.iter_unpack("<3f", positions[72 * i : 72 * i + 72]))
+        gltf["bufferViews"].append({"buffer": 0, "byteOffset": 72 * i, "byteLength": 72})
+        gltf["accessors"].append({"bufferView": i, "componentType": 5126, "count": 6, "type": "VEC3",
+                                  "min": [min(axis) for axis in zip(*points)],
+                                  "max": [max(axis) for axis in zip(*points)]})
+    path.write_text(json.dumps(gltf), encoding="utf-8")
+
+
+def obscura(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, check=False)
+
+
+class Options(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.temporary.cleanup)
+        cls.folder = pathlib.Path(cls.temporary.name)
+        cls.scene = cls.folder / "room.gltf"
+        write_room(cls.scene)
+        cls.base = cls.folder / "base.exr"
+        arguments = [word for pair in BASE.items() for word in pair]
+        result = obscura("render", cls.scene, "-o", cls.base, "--stats", cls.folder / "base.json", *arguments)
+        if result.returncode == 3 and os.environ.get("OBSCURA_REQUIRE_DEVICE") != "1":
+            raise unittest.SkipTest("there is no OpenCL device: " + result.stderr)
+        assert result.returncode == 0, result.stderr
+
+    def render(self, name, arguments, replaces=()):
+        """Renders NAME.exr and NAME.json; arguments, and other spellings in replaces, take the base's place."""
+        kept = [word for pair in BASE.items() if pair[0] not in (*arguments, *replaces) for word in pair]
+        result = obscura("render", self.scene, "-o", self.folder / f"{name}.exr", "--stats",
+                         self.folder / f"{name}.json", *kept, *arguments)
+        self.assertEqual(0, result.returncode, result.stderr)
+        return result
+
+    def differs(self, name):
+        result = obscura("compare", self.folder / f"{name}.exr", self.base)
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        return result.returncode == 1
+
+    def stats(self, name):
+        return json.loads((self.folder / f"{name}.json").read_text(encoding="utf-8"))
+
+    def test_every_option_has_a_case(self):
+        listed = set()
+        for line in obscura("render", "--help").stdout.splitlines():
+            match = re.match(r"\s+((?:-\w,)?--[a-z-]+(?:,--[a-z-]+)*)\b", line)
+            if match:
+                listed.add(" ".join(name for name in match.group(1).split(",") if name.startswith("--")))
+        self.assertEqual(listed - {"--help"}, set(CHANGES_PICTURE) | set(KEEPS_PICTURE) | OTHERS)
+
+    def test_same_arguments_give_same_picture(self):
+        self.render("again", [])
+        self.assertFalse(self.differs("again"))
+
+    def test_options_of_the_picture_change_it(self):
+        for spellings, arguments in CHANGES_PICTURE.items():
+            with self.subTest(spellings):
+                self.render("changed", arguments)
+                self.assertTrue(self.differs("changed"), "the picture is the same")
+                for alias in set(spellings.split()) - {arguments[0]}:
+                    self.render("alias", [alias, *arguments[1:]], replaces=spellings.split())
+                    self.assertTrue(self.differs("alias"), f"{alias} doesn't change the picture")
+
+    def test_options_of_the_work_keep_the_picture_and_change_the_work(self):
+        for spellings, arguments in KEEPS_PICTURE.items():
+            with self.subTest(spellings):
+                self.render("work", arguments)
+                self.assertFalse(self.differs("work"), "the picture differs")
+        # What each one does change:
+        base = self.stats("base")
+        for option in ("--wave-size", "--memory"):
+            self.render("work", KEEPS_PICTURE[option])
+            self.assertLess(self.stats("work")["wave_capacity"], base["wave_capacity"])
+        self.render("work", KEEPS_PICTURE["--needs"])
+        self.assertLess(len(self.stats("work")["needs"]), len(base["needs"]))
+
+    def test_size_and_crop_change_the_pixels_rendered(self):
+        rays = self.stats("base")["rays"]["camera"]
+        for arguments, factor in ((["--width", "48"], 2), (["--height", "36"], 2), (["--cropwindow", "0,0.5,0,1"], 0.5)):
+            with self.subTest(arguments[0]):
+                self.render("size", arguments)
+                self.assertEqual(rays * factor, self.stats("size")["rays"]["camera"])
+
+    def test_layers_change_what_is_written(self):
+        self.render("all_layers", ["--layers", "all"])
+        self.render("no_layers", ["--layers", "none"])
+        sizes = [(self.folder / f"{name}.exr").stat().st_size for name in ("no_layers", "base", "all_layers")]
+        self.assertEqual(sizes, sorted(set(sizes)))
+
+    def test_preview_and_exposure_write_pictures(self):
+        self.render("dark", ["--preview", self.folder / "dark.png"])
+        self.render("bright", ["--preview", self.folder / "bright.png", "--exposure", "2"])
+        self.assertNotEqual((self.folder / "dark.png").read_bytes(), (self.folder / "bright.png").read_bytes())
+
+    def test_quiet_prints_nothing(self):
+        self.assertNotEqual("", self.render("loud", []).stderr)
+        self.assertEqual("", self.render("quiet", ["--quiet"]).stderr)
+
+    def test_unknown_device_is_refused(self):
+        result = obscura("render", self.scene, "-o", self.folder / "x.exr", "--device", "no such device")
+        self.assertEqual(2, result.returncode, result.stderr)
+        self.assertFalse((self.folder / "x.exr").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fixture of tests that need an OpenCL device, and what they share: `using Layout = DeviceTest;` and
+// TEST_F(Layout, ...). Without a device the tests are skipped, or fail where OBSCURA_REQUIRE_DEVICE=1.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "device/device.h"
+
+namespace obscura::test {
+
+// Opens the device on the first call. Only for tests that have checked that there is one.
+inline Device& shared_device() {
+    static Device device = open_device();
+    return device;
+}
+
+class DeviceTest : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        // Drivers run threads: a death test starts its program anew instead of forking.
+        GTEST_FLAG_SET(death_test_style, "threadsafe");
+        const std::vector<DeviceInfo> devices = list_devices();
+        if (default_device(devices) >= 0) return;
+        const char* const required = std::getenv("OBSCURA_REQUIRE_DEVICE");
+        if (required != nullptr && std::string_view(required) == "1")
+            FAIL() << "no usable OpenCL device: " << devices.front().reason;
+        GTEST_SKIP() << "no usable OpenCL device: " << devices.front().reason;
+    }
+
+    Device& device() { return shared_device(); }
+};
+
+// An environment variable for the length of a scope.
+class ScopedVariable {
+  public:
+    ScopedVariable(std::string name, const std::string& value) : name_(std::move(name)) {
+        if (const char* const before = std::getenv(name_.c_str())) before_ = before;
+        setenv(name_.c_str(), value.c_str(), 1);
+    }
+    ~ScopedVariable() {
+        if (before_)
+            setenv(name_.c_str(), before_->c_str(), 1);
+        else
+            unsetenv(name_.c_str());
+    }
+    ScopedVariable(const ScopedVariable&) = delete;
+    ScopedVariable& operator=(const ScopedVariable&) = delete;
+
+  private:
+    std::string name_;
+    std::optional<std::string> before_;
+};
+
+// An empty folder of its own that is removed with all it holds.
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        std::string path = (std::filesystem::temp_directory_path() / "obscura-test-XXXXXX").string();
+        if (mkdtemp(path.data()) == nullptr)
+            throw std::filesystem::filesystem_error("mkdtemp", path, {errno, std::generic_category()});
+        path_ = path;
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+
+  private:
+    std::filesystem::path path_;
+};
+
+}  // namespace obscura::test

@@ -1,0 +1,457 @@
+// SPDX-License-Identifier: Apache-2.0
+// Broken glTF files end in an InputError that names file and place, never in a crash or a half-read scene.
+#include "base/log.h"
+#include "scene/gltf.h"
+#include "scene/radiometry.h"
+#include "support/errors.h"
+#include "support/gltf_builder.h"
+#include "support/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+namespace obscura {
+namespace {
+
+using nlohmann::json;
+using test::GltfBuilder;
+using test::TemporaryFolder;
+
+constexpr float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
+constexpr float INFINITE = std::numeric_limits<float>::infinity();
+
+// The message for a file, without the folder's name.
+std::string error_of_bytes(const std::vector<uint8_t>& bytes, const std::string& name = "test.glb") {
+    const TemporaryFolder folder;
+    test::write_file(folder.file(name), bytes);
+    std::string message = test::input_error([&] { load_gltf(folder.file(name)); });
+    EXPECT_TRUE(message.starts_with(folder.file(name) + ": ")) << message;
+    return message.substr(std::min(message.size(), folder.path().string().size() + 1));
+}
+
+std::string error_of(const GltfBuilder& file) {
+    return error_of_bytes(file.glb_bytes());
+}
+
+#define EXPECT_CONTAINS(text, part)                                                              \
+    do {                                                                                         \
+        const std::string text_ = (text);                                                        \
+        EXPECT_NE(text_.find(part), std::string::npos) << "'" << (part) << "' not in " << text_; \
+    } while (false)
+
+GltfBuilder triangle() {
+    GltfBuilder file;
+    file.add_triangle();
+    return file;
+}
+
+// A quad with everything that the reader follows: indices, normals, texture, sparse data, light, camera.
+GltfBuilder rich_file() {
+    GltfBuilder file;
+    const int positions = file.accessor<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3");
+    const int normals =
+        file.accessor<int8_t>({0, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0}, "VEC3", true);
+    file.json["accessors"][normals]["count"] = 4;
+    file.json["bufferViews"][1]["byteStride"] = 4;
+    const int uvs = file.accessor<uint16_t>({0, 0, 65535, 0, 65535, 65535, 0, 65535}, "VEC2", true);
+    const int indices = file.accessor<uint8_t>({0, 1, 2, 0, 2, 3}, "SCALAR");
+    const std::vector<uint8_t> which{3};
+    const std::vector<float> value{0, 1, 0.5f};
+    const int index_view = file.view(which.data(), which.size());
+    const int value_view = file.view(value.data(), 12);
+    file.json["accessors"][positions]["sparse"] = {
+        {"count", 1},
+        {"indices", {{"bufferView", index_view}, {"componentType", 5121}}},
+        {"values", {{"bufferView", value_view}}}};
+    const int image_view = file.view(test::PNG_FOUR_COLORS.data(), test::PNG_FOUR_COLORS.size());
+    file.append("images", {{"bufferView", image_view}, {"mimeType", "image/png"}});
+    file.append("samplers", {{"magFilter", 9728}, {"wrapS", 33071}});
+    file.append("textures", {{"source", 0}, {"sampler", 0}});
+    file.append("materials",
+                {{"pbrMetallicRoughness",
+                  {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}}},
+                 {"emissiveFactor", {1, 1, 1}}});
+    const int mesh = file.mesh({{"POSITION", positions}, {"NORMAL", normals}, {"TEXCOORD_0", uvs}}, indices,
+                               {{"material", 0}});
+    file.append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.6}, {"znear", 0.1}}}});
+    file.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", json::object()}}};
+    file.append("nodes", {{"mesh", mesh}, {"scale", {1, 2, -1}}});
+    file.append("nodes", {{"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    file.append("nodes", {{"children", {0, 1}}, {"rotation", {0, 0, 0, 1}}});
+    file.json["scenes"] = {{{"nodes", {2}}}};
+    file.json["scene"] = 0;
+    return file;
+}
+
+TEST(GltfErrors, MissingFileIsNamed) {
+    EXPECT_INPUT_ERROR(load_gltf("no/such/scene.glb"), "no/such/scene.glb");
+    const TemporaryFolder folder;
+    EXPECT_INPUT_ERROR(load_gltf(folder.path()), folder.path().string());
+}
+
+TEST(GltfErrors, EmptyAndForeignFilesAreRefused) {
+    EXPECT_CONTAINS(error_of_bytes({}), "not a valid glTF file");
+    EXPECT_CONTAINS(error_of_bytes({'h', 'e', 'l', 'l', 'o'}), "not a valid glTF file");
+    EXPECT_CONTAINS(error_of_bytes({'{', '}', ' ', ' '}), "asset");
+    EXPECT_CONTAINS(error_of_bytes({'[', '1', ',', '2', ']'}), "not a valid glTF file");
+}
+
+TEST(GltfErrors, BrokenContainerSaysWhere) {
+    const std::vector<uint8_t> good = triangle().glb_bytes();
+    std::vector<uint8_t> bytes = good;
+    bytes.resize(bytes.size() - 1);
+    EXPECT_CONTAINS(error_of_bytes(bytes), "header: the file is truncated");
+    bytes.resize(16);
+    EXPECT_CONTAINS(error_of_bytes(bytes), "header: the file is truncated");
+    bytes = good;
+    bytes[4] = 1;
+    EXPECT_CONTAINS(error_of_bytes(bytes), "version 1");
+    bytes = good;
+    bytes[14] = 0xff;  // length of the JSON chunk
+    EXPECT_CONTAINS(error_of_bytes(bytes), "chunk 0: its");
+    bytes = good;
+    bytes[16] = 'j';
+    EXPECT_CONTAINS(error_of_bytes(bytes), "chunk 0: it is not the JSON chunk");
+    // A binary chunk that is 8 bytes longer than what follows its header: tinygltf alone would read past the end.
+    bytes = good;
+    const size_t json_bytes = bytes[12] | bytes[13] << 8;
+    bytes[20 + json_bytes] = static_cast<uint8_t>(bytes[20 + json_bytes] + 8);
+    EXPECT_CONTAINS(error_of_bytes(bytes), "chunk 1: its 44 bytes reach past the end");
+}
+
+TEST(GltfErrors, JsonErrorsAreRefused) {
+    const std::string broken = R"({"asset": {"version": "2.0"}, "nodes": [}])";
+    EXPECT_CONTAINS(error_of_bytes({broken.begin(), broken.end()}, "a.gltf"), "parse error");
+    const std::string huge = R"({"asset": {"version": "2.0"}, "nodes": [{"translation": [1e999, 0, 0]}]})";
+    EXPECT_CONTAINS(error_of_bytes({huge.begin(), huge.end()}, "a.gltf"), "not a valid glTF file");
+    const std::string deep = R"({"asset": {"version": "2.0"}, "extras": )" + std::string(100000, '[') +
+                             std::string(100000, ']') + "}";
+    EXPECT_CONTAINS(error_of_bytes({deep.begin(), deep.end()}, "a.gltf"), "levels deep");
+}
+
+TEST(GltfErrors, BufferFilesAreChecked) {
+    const TemporaryFolder folder;
+    const std::string text = triangle().gltf_text("data.bin");
+    test::write_file(folder.file("a.gltf"), {text.begin(), text.end()});
+    EXPECT_INPUT_ERROR(load_gltf(folder.file("a.gltf")), "data.bin");
+    test::write_file(folder.file("data.bin"), {1, 2, 3});
+    EXPECT_INPUT_ERROR(load_gltf(folder.file("a.gltf")), "size mismatch");
+    std::filesystem::remove(folder.file("data.bin"));
+    std::filesystem::create_directory(folder.file("data.bin"));
+    EXPECT_INPUT_ERROR(load_gltf(folder.file("a.gltf")), "data.bin");
+}
+
+TEST(GltfErrors, ShellSyntaxInUrisIsNotExpanded) {
+    const TemporaryFolder folder;
+    const std::string text = triangle().gltf_text("$(touch " + folder.file("touched") + ").bin");
+    test::write_file(folder.file("a.gltf"), {text.begin(), text.end()});
+    EXPECT_INPUT_ERROR(load_gltf(folder.file("a.gltf")), "not found");
+    EXPECT_FALSE(std::filesystem::exists(folder.file("touched")));
+}
+
+TEST(GltfErrors, AccessorsMustFitTheirBuffers) {
+    const std::string place = "mesh 'thing' primitive 0: POSITION: accessor 0: ";
+    const auto change = [](const char* list, const char* key, const json& value) {
+        GltfBuilder file = triangle();
+        file.json[list][0][key] = value;
+        return error_of(file);
+    };
+    EXPECT_CONTAINS(change("accessors", "count", 4), place + "4 elements of 12 bytes from byte 0 do not fit");
+    EXPECT_CONTAINS(change("accessors", "byteOffset", 4),
+                    place + "3 elements of 12 bytes from byte 4 do not fit");
+    EXPECT_CONTAINS(change("accessors", "byteOffset", 18446744073709551612u), "do not fit");
+    EXPECT_CONTAINS(change("accessors", "count", 4294967296u), "more than 32-bit indices reach");
+    EXPECT_CONTAINS(change("accessors", "count", 4294967295u), "do not fit");
+    EXPECT_CONTAINS(change("accessors", "bufferView", 7),
+                    place + "buffer view 7 does not exist; the file has 1");
+    EXPECT_CONTAINS(change("accessors", "componentType", 5124), "component type 5124 is not one of glTF's");
+    EXPECT_CONTAINS(change("accessors", "type", "VEC2"), "POSITION: its accessor 0 has the wrong type");
+    EXPECT_CONTAINS(change("accessors", "componentType", 5125), "has the wrong type");
+    EXPECT_CONTAINS(change("bufferViews", "buffer", 3), "buffer 3 does not exist");
+    EXPECT_CONTAINS(change("bufferViews", "byteLength", 40), "buffer view 0 ends at byte 0 + 40");
+    EXPECT_CONTAINS(change("bufferViews", "byteOffset", 18446744073709551615u),
+                    "but its buffer has 36 bytes");
+    EXPECT_CONTAINS(change("bufferViews", "byteStride", 8), "elements of 12 bytes overlap at a stride of 8");
+    EXPECT_CONTAINS(change("bufferViews", "byteStride", 20), "do not fit");
+    GltfBuilder file = triangle();
+    file.json["accessors"][0].erase("bufferView");
+    EXPECT_CONTAINS(error_of(file), "it has no buffer view");
+    file = triangle();
+    file.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 5;
+    EXPECT_CONTAINS(error_of(file), "accessor 5 does not exist; the file has 1");
+}
+
+TEST(GltfErrors, SparseDataIsChecked) {
+    const auto change = [](const char* part, const char* key, const json& value) {
+        GltfBuilder file = rich_file();
+        json& sparse = file.json["accessors"][0]["sparse"];
+        (*part == '\0' ? sparse : sparse[part])[key] = value;
+        return error_of(file);
+    };
+    EXPECT_CONTAINS(change("", "count", 2), "do not fit");
+    EXPECT_CONTAINS(change("", "count", -1), "negative count");
+    EXPECT_CONTAINS(change("indices", "byteOffset", -4), "negative count or offset");
+    EXPECT_CONTAINS(change("indices", "componentType", 5126), "not an unsigned integer");
+    EXPECT_CONTAINS(change("values", "bufferView", 99), "buffer view 99 does not exist");
+    GltfBuilder file = rich_file();
+    file.buffer[file.json["bufferViews"][4]["byteOffset"].get<size_t>()] = 4;
+    EXPECT_CONTAINS(error_of(file), "sparse index 4 is outside its 4 elements");
+}
+
+TEST(GltfErrors, VerticesMustBeFinite) {
+    const auto with_vertices = [](const std::vector<float>& positions, const std::vector<float>& normals,
+                                  double scale) {
+        GltfBuilder file;
+        const int position = file.accessor<float>(positions, "VEC3");
+        const int normal = file.accessor<float>(normals, "VEC3");
+        const int mesh = file.mesh({{"POSITION", position}, {"NORMAL", normal}});
+        file.append("nodes", {{"mesh", mesh}, {"scale", {scale, 1, 1}}});
+        return error_of(file);
+    };
+    const std::vector<float> good{0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::vector<float> up{0, 0, 1, 0, 0, 1, 0, 0, 1};
+    EXPECT_CONTAINS(with_vertices({0, 0, 0, 1, NOT_A_NUMBER, 0, 0, 1, 0}, up, 1),
+                    "test.glb: mesh 'thing' primitive 0: the position of vertex 1 is not finite");
+    EXPECT_CONTAINS(with_vertices({0, 0, 0, 1, 0, 0, 0, INFINITE, 0}, up, 1), "the position of vertex 2");
+    EXPECT_CONTAINS(with_vertices({0, 0, 0, 3e38f, 0, 0, 0, 1, 0}, up, 10), "the position of vertex 1");
+    EXPECT_CONTAINS(with_vertices(good, {0, 0, 1, 0, 0, NOT_A_NUMBER, 0, 0, 1}, 1), "the normal of vertex 1");
+    EXPECT_CONTAINS(with_vertices(good, {0, 0, INFINITE, 0, 0, 1, 0, 0, 1}, 1), "the normal of vertex 0");
+    EXPECT_CONTAINS(with_vertices(good, {0, 0, 1, 0, 0, 1}, 1), "NORMAL: it has 2 elements for 3 positions");
+}
+
+TEST(GltfErrors, IndicesMustBeInRangeAndWhole) {
+    const auto with_indices = [](GltfBuilder& file, int indices) {
+        const int positions = file.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+        file.append("nodes", {{"mesh", file.mesh({{"POSITION", positions}}, indices)}});
+        return error_of(file);
+    };
+    GltfBuilder out_of_range, fraction, real, vectors;
+    EXPECT_CONTAINS(with_indices(out_of_range, out_of_range.accessor<uint16_t>({0, 1, 3}, "SCALAR")),
+                    "mesh 'thing' primitive 0: index 3 is outside its 3 vertices");
+    EXPECT_CONTAINS(with_indices(fraction, fraction.accessor<uint16_t>({0, 1, 2, 0}, "SCALAR")),
+                    "4 corners do not make whole triangles");
+    EXPECT_CONTAINS(with_indices(real, real.accessor<float>({0, 1, 2}, "SCALAR")),
+                    "must be unsigned integers");
+    EXPECT_CONTAINS(with_indices(vectors, vectors.accessor<uint16_t>({0, 1, 2, 0}, "VEC2")),
+                    "must be unsigned integers");
+    GltfBuilder file = triangle();
+    file.json["meshes"][0]["primitives"][0]["indices"] = 9;
+    EXPECT_CONTAINS(error_of(file), "out of bounds");
+    file = triangle();
+    file.json["meshes"][0]["primitives"][0]["mode"] = 9;
+    EXPECT_CONTAINS(error_of(file), "its mode 9 is not one of glTF's");
+}
+
+TEST(GltfErrors, ReferencesMustExist) {
+    const auto on_node = [](const char* key, const json& value) {
+        GltfBuilder file = triangle();
+        file.json["nodes"][0]["name"] = "seat";
+        file.json["nodes"][0][key] = value;
+        return error_of(file);
+    };
+    EXPECT_CONTAINS(on_node("mesh", 1), "node 'seat': mesh 1 does not exist; the file has 1");
+    EXPECT_CONTAINS(on_node("camera", 0), "node 'seat': camera 0 does not exist; the file has 0");
+    EXPECT_CONTAINS(on_node("children", {4}), "node 4 does not exist");
+    EXPECT_CONTAINS(on_node("children", {-1}), "node -1 does not exist");
+    EXPECT_CONTAINS(on_node("extensions", {{"KHR_lights_punctual", {{"light", 2}}}}),
+                    "light 2 does not exist");
+    EXPECT_CONTAINS(on_node("extensions", {{"KHR_lights_punctual", {{"light", "x"}}}}),
+                    "light must be an index");
+    GltfBuilder file = triangle();
+    file.json["meshes"][0]["primitives"][0]["material"] = 0;
+    EXPECT_CONTAINS(error_of(file), "material 0 does not exist");
+    file = triangle();
+    file.json["scene"] = 1;
+    EXPECT_CONTAINS(error_of(file), "scene 1 does not exist");
+}
+
+TEST(GltfErrors, NodesMustFormATree) {
+    GltfBuilder cycle = triangle();
+    cycle.json["nodes"] = {{{"children", {1}}}, {{"children", {0}}, {"name", "loop"}}};
+    cycle.json["scenes"] = {{{"nodes", {0}}}};
+    EXPECT_CONTAINS(error_of(cycle), "node 0: it is its own ancestor");
+    GltfBuilder self = triangle();
+    self.json["nodes"][0]["children"] = {0};
+    self.json["scenes"] = {{{"nodes", {0}}}};
+    EXPECT_CONTAINS(error_of(self), "its own ancestor");
+    GltfBuilder shared = triangle();
+    shared.json["nodes"] = {{{"children", {2}}}, {{"children", {2}}}, {{"mesh", 0}}};
+    EXPECT_CONTAINS(error_of(shared), "node 2: it is its own ancestor, or has two parents");
+}
+
+TEST(GltfErrors, LongChainOfNodesIsFine) {
+    const TemporaryFolder folder;
+    GltfBuilder file = triangle();
+    for (int i = 1; i < 20000; ++i)
+        file.json["nodes"].push_back({{"children", {i - 1}}});
+    EXPECT_EQ(load_gltf(file.write_glb(folder.file("chain.glb"))).triangles.size(), 1u);
+}
+
+TEST(GltfErrors, TransformsMustBeWellFormed) {
+    const auto on_node = [](const char* key, const json& value) {
+        GltfBuilder file = triangle();
+        file.json["nodes"][0][key] = value;
+        return error_of(file);
+    };
+    EXPECT_CONTAINS(on_node("scale", {1, 1}), "node 0: scale must be a list of 3 numbers");
+    EXPECT_CONTAINS(on_node("rotation", {0, 0, 0}), "rotation must be a list of 4 numbers");
+    EXPECT_CONTAINS(on_node("rotation", {0, 0, 0, 0}), "not a quaternion of length 1");
+    EXPECT_CONTAINS(on_node("matrix", {1, 2, 3}), "matrix must be a list of 16 numbers");
+    EXPECT_CONTAINS(on_node("matrix", {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}), "not affine");
+}
+
+TEST(GltfErrors, RequiredExtensionsMustBeKnown) {
+    GltfBuilder file = triangle();
+    file.json["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+    file.json["extensionsUsed"] = {"KHR_draco_mesh_compression"};
+    EXPECT_CONTAINS(error_of(file),
+                    "extensionsRequired: the file needs the extension KHR_draco_mesh_compression");
+}
+
+TEST(GltfErrors, MaterialValuesMustBeInRange) {
+    const auto with_material = [](const json& material) {
+        GltfBuilder file = triangle();
+        json named = material;
+        named["name"] = "paint";
+        file.append("materials", named);
+        file.json["meshes"][0]["primitives"][0]["material"] = 0;
+        return error_of(file);
+    };
+    EXPECT_CONTAINS(with_material({{"pbrMetallicRoughness", {{"metallicFactor", 1.5}}}}),
+                    "material 'paint': metallicFactor is 1.5, outside 0 to 1");
+    EXPECT_CONTAINS(with_material({{"pbrMetallicRoughness", {{"roughnessFactor", -0.1}}}}),
+                    "roughnessFactor is -0.1");
+    EXPECT_CONTAINS(with_material({{"pbrMetallicRoughness", {{"baseColorFactor", {2, 0, 0, 1}}}}}),
+                    "baseColorFactor is 2");
+    EXPECT_CONTAINS(with_material({{"emissiveFactor", {0, -1, 0}}}), "must be finite and not negative");
+    EXPECT_CONTAINS(with_material({{"emissiveFactor", {0, 1, 0, 1}}}), "emissiveFactor");
+    const auto with_extension = [&](const char* name, const json& members) {
+        return with_material({{"extensions", {{name, members}}}});
+    };
+    EXPECT_CONTAINS(with_extension("KHR_materials_emissive_strength", {{"emissiveStrength", "high"}}),
+                    "emissiveStrength must be a finite number");
+    EXPECT_CONTAINS(with_extension("KHR_materials_specular", {{"specularFactor", 2}}), "specularFactor is 2");
+    EXPECT_CONTAINS(with_extension("KHR_materials_specular", {{"specularColorFactor", {1, 1}}}),
+                    "list of 3 numbers");
+    EXPECT_CONTAINS(with_extension("KHR_materials_transmission", {{"transmissionFactor", -1}}),
+                    "transmissionFactor is -1");
+}
+
+TEST(GltfErrors, TexturesMustBeReadable) {
+    const auto change = [](const char* list, const char* key, const json& value) {
+        GltfBuilder file = rich_file();
+        file.json[list][0][key] = value;
+        return error_of(file);
+    };
+    EXPECT_CONTAINS(change("textures", "source", 3), "material 0: texture 0: it has no PNG or JPEG image");
+    EXPECT_CONTAINS(change("textures", "sampler", 3), "sampler 3 does not exist");
+    EXPECT_CONTAINS(change("samplers", "wrapS", 1), "unknown wrap mode 1");
+    EXPECT_CONTAINS(change("images", "bufferView", 0), "can't be decoded as PNG or JPEG");
+    EXPECT_CONTAINS(change("images", "bufferView", 50), "50");
+    GltfBuilder missing = rich_file();
+    missing.json["images"][0] = {{"uri", "missing.png"}};
+    EXPECT_CONTAINS(error_of(missing), "the image file 'missing.png' is missing");
+    GltfBuilder outside = rich_file();
+    outside.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 8;
+    EXPECT_CONTAINS(error_of(outside), "texture 8 does not exist");
+    GltfBuilder past_end = rich_file();
+    past_end.json["bufferViews"].back()["byteLength"] = 100000;
+    EXPECT_CONTAINS(error_of(past_end), "reaches past the end of buffer 0");
+}
+
+TEST(GltfErrors, LightsMustBeMeaningful) {
+    const auto with_light = [](const json& light) {
+        GltfBuilder file = rich_file();
+        file.json["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+        return error_of(file);
+    };
+    EXPECT_CONTAINS(with_light({{"type", "area"}}),
+                    "light 0: its type 'area' is not point, spot or directional");
+    EXPECT_CONTAINS(with_light({{"type", "point"}, {"intensity", -1}}), "finite and not negative");
+    EXPECT_CONTAINS(with_light({{"type", "point"}, {"color", {1, 1}}}), "color must be a list of 3 numbers");
+    EXPECT_CONTAINS(with_light({{"type", "point"}, {"range", -2}}), "range -2 must be positive");
+    EXPECT_CONTAINS(
+        with_light({{"type", "spot"}, {"spot", {{"innerConeAngle", 1}, {"outerConeAngle", 0.5}}}}),
+        "0 <= inner < outer");
+}
+
+// Loads a mutated file; whatever loads must also be usable.
+void expect_loads_or_refuses(const std::string& path) {
+    try {
+        const Scene scene = load_gltf(path);
+        compute_radiometry(scene);
+    } catch (const InputError& error) {
+        EXPECT_FALSE(std::string(error.what()).empty());
+    }
+}
+
+TEST(GltfFuzz, RichFileIsValid) {
+    const TemporaryFolder folder;
+    const Scene scene = load_gltf(rich_file().write_glb(folder.file("a.glb")));
+    EXPECT_EQ(scene.triangles.size(), 2u);
+    EXPECT_EQ(scene.textures.size(), 1u);
+    EXPECT_EQ(scene.lights.size(), 1u);
+    EXPECT_FLOAT_EQ(scene.bounds.min.z, -0.5f);  // from the sparse vertex
+}
+
+TEST(GltfFuzz, EveryTruncationLoadsOrIsRefused) {
+    const TemporaryFolder folder;
+    const std::vector<uint8_t> binary = rich_file().glb_bytes();
+    const std::string text = rich_file().gltf_text();
+    const std::string path = folder.file("fuzzed.glb");
+    testing::internal::CaptureStderr();
+    for (size_t size = 0; size < binary.size(); ++size) {
+        test::write_file(path, {binary.begin(), binary.begin() + static_cast<std::ptrdiff_t>(size)});
+        EXPECT_THROW(load_gltf(path), InputError) << size;
+    }
+    for (size_t size = 0; size < text.size(); ++size) {
+        test::write_file(path, {text.begin(), text.begin() + static_cast<std::ptrdiff_t>(size)});
+        EXPECT_THROW(load_gltf(path), InputError) << size;
+    }
+    testing::internal::GetCapturedStderr();
+}
+
+TEST(GltfFuzz, EveryChangedByteLoadsOrIsRefused) {
+    const TemporaryFolder folder;
+    const std::string text = rich_file().gltf_text();
+    const std::string path = folder.file("fuzzed.glb");
+    testing::internal::CaptureStderr();
+    for (const std::vector<uint8_t>& good : {rich_file().glb_bytes(), {text.begin(), text.end()}}) {
+        for (size_t i = 0; i < good.size(); ++i) {
+            for (const int change : {0x01, 0x80, 0x10}) {
+                std::vector<uint8_t> bytes = good;
+                bytes[i] = static_cast<uint8_t>(bytes[i] ^ change);
+                test::write_file(path, bytes);
+                expect_loads_or_refuses(path);
+            }
+        }
+    }
+    testing::internal::GetCapturedStderr();
+}
+
+// Digits are what offsets, counts and indices are made of.
+TEST(GltfFuzz, EveryChangedNumberLoadsOrIsRefused) {
+    const TemporaryFolder folder;
+    const std::string good = rich_file().gltf_text();
+    const std::string path = folder.file("fuzzed.gltf");
+    testing::internal::CaptureStderr();
+    for (size_t i = 0; i < good.size(); ++i) {
+        if (good[i] < '0' || good[i] > '9' || (i > 0 && good[i - 1] >= '0' && good[i - 1] <= '9')) continue;
+        size_t end = i;
+        while (good[end] >= '0' && good[end] <= '9')
+            ++end;
+        for (const char* number : {"-1", "0", "1", "3", "255", "5126", "65536", "2147483647", "2147483648",
+                                   "4294967295", "18446744073709551615", "1e300", "null", "\"x\"", "[]"}) {
+            const std::string text = good.substr(0, i) + number + good.substr(end);
+            test::write_file(path, {text.begin(), text.end()});
+            expect_loads_or_refuses(path);
+        }
+    }
+    testing::internal::GetCapturedStderr();
+}
+
+}  // namespace
+}  // namespace obscura

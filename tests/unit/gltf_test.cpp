@@ -1,0 +1,502 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading glTF: geometry, transforms, materials, textures and lights arrive as the specification says, and
+// what isn't supported is named in a warning.
+#include "scene/gltf.h"
+
+#include "support/errors.h"
+#include "support/gltf_builder.h"
+#include "support/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+namespace obscura {
+namespace {
+
+using nlohmann::json;
+using test::GltfBuilder;
+using test::TemporaryFolder;
+
+struct Loaded {
+    Scene scene;
+    std::string said;  // warnings
+};
+
+Loaded load(const GltfBuilder& file) {
+    const TemporaryFolder folder;
+    testing::internal::CaptureStderr();
+    Loaded loaded;
+    try {
+        loaded.scene = load_gltf(file.write_glb(folder.file("test.glb")));
+    } catch (const InputError& error) {
+        ADD_FAILURE() << error.what();
+    }
+    loaded.said = testing::internal::GetCapturedStderr();
+    return loaded;
+}
+
+// The corners of a triangle, for comparison.
+std::array<V3f, 3> corners(const Scene& scene, uint32_t triangle) {
+    return {scene.corner(triangle, 0).position, scene.corner(triangle, 1).position,
+            scene.corner(triangle, 2).position};
+}
+
+void expect_near(const V3f& found, const V3f& expected, float tolerance = 1e-6f) {
+    EXPECT_NEAR((found - expected).length(), 0, tolerance) << found << " instead of " << expected;
+}
+
+// One triangle in z = 0 facing +z, with the normal (0,0,1), on a node with these members.
+GltfBuilder triangle_on_node(const json& node) {
+    GltfBuilder file;
+    const int positions = file.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+    const int normals = file.accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+    json with_mesh = node;
+    with_mesh["mesh"] = file.mesh({{"POSITION", positions}, {"NORMAL", normals}});
+    file.append("nodes", with_mesh);
+    return file;
+}
+
+// A triangle whose material is the given one.
+GltfBuilder with_material(const json& material) {
+    GltfBuilder file;
+    const int positions = file.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+    const int uvs = file.accessor<float>({0, 0, 1, 0, 0, 1}, "VEC2");
+    file.append("materials", material);
+    const int mesh = file.mesh({{"POSITION", positions}, {"TEXCOORD_0", uvs}}, -1, {{"material", 0}});
+    file.append("nodes", {{"mesh", mesh}});
+    return file;
+}
+
+int add_image_texture(GltfBuilder& file, const std::vector<uint8_t>& png, const json& sampler = nullptr) {
+    const int view = file.view(png.data(), png.size());
+    json texture = {{"source", file.append("images", {{"bufferView", view}, {"mimeType", "image/png"}})}};
+    if (sampler.is_object()) texture["sampler"] = file.append("samplers", sampler);
+    return file.append("textures", texture);
+}
+
+TEST(Gltf, IndicesOfEveryTypeGiveTheSameTriangles) {
+    const auto make = [](auto index_value) {
+        using Index = decltype(index_value);
+        GltfBuilder file;
+        const int positions = file.accessor<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3");
+        const int indices = file.accessor<Index>({0, 1, 2, 0, 2, 3}, "SCALAR");
+        file.append("nodes", {{"mesh", file.mesh({{"POSITION", positions}}, indices)}});
+        return load(file).scene;
+    };
+    for (const Scene& scene : {make(uint8_t{}), make(uint16_t{}), make(uint32_t{})}) {
+        ASSERT_EQ(scene.triangles.size(), 2u);
+        EXPECT_EQ(scene.vertices.size(), 4u);
+        EXPECT_EQ(corners(scene, 1), (std::array{V3f(0, 0, 0), V3f(1, 1, 0), V3f(0, 1, 0)}));
+        EXPECT_EQ(scene.bounds.max, V3f(1, 1, 0));
+        EXPECT_EQ(geometric_normal(scene, 0), V3d(0, 0, 1));
+        EXPECT_DOUBLE_EQ(triangle_area(scene, 0), 0.5);
+    }
+}
+
+TEST(Gltf, StripAndFanKeepTheirOrientation) {
+    for (const auto& [mode, points] :
+         {std::pair{5, std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0}},
+          {6, {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, -1, 1, 0}}}) {
+        GltfBuilder file;
+        const int positions = file.accessor<float>(points, "VEC3");
+        file.append("nodes", {{"mesh", file.mesh({{"POSITION", positions}}, -1, {{"mode", mode}})}});
+        const Scene scene = load(file).scene;
+        ASSERT_EQ(scene.triangles.size(), 3u);
+        for (uint32_t i = 0; i < 3; ++i)
+            EXPECT_EQ(geometric_normal(scene, i), V3d(0, 0, 1)) << mode << " " << i;
+    }
+}
+
+TEST(Gltf, OnlyUsedVerticesAreKept) {
+    GltfBuilder file;
+    const int positions = file.accessor<float>({9, 9, 9, 0, 0, 0, 9, 9, 9, 1, 0, 0, 0, 1, 0}, "VEC3");
+    const int indices = file.accessor<uint16_t>({1, 3, 4}, "SCALAR");
+    file.append("nodes", {{"mesh", file.mesh({{"POSITION", positions}}, indices)}});
+    const Scene scene = load(file).scene;
+    EXPECT_EQ(scene.vertices.size(), 3u);
+    EXPECT_EQ(scene.bounds.max, V3f(1, 1, 0));
+}
+
+TEST(Gltf, InterleavedAccessorsUseTheirStride) {
+    GltfBuilder file;
+    const std::vector<float> data{0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 1};
+    const int view = file.view(data.data(), data.size() * 4);
+    file.json["bufferViews"][0]["byteStride"] = 24;
+    const json accessor = {{"bufferView", view}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}};
+    json second = accessor;
+    second["byteOffset"] = 12;
+    const int positions = file.append("accessors", accessor);
+    const int normals = file.append("accessors", second);
+    file.append("nodes", {{"mesh", file.mesh({{"POSITION", positions}, {"NORMAL", normals}})}});
+    const Scene scene = load(file).scene;
+    ASSERT_EQ(scene.triangles.size(), 1u);
+    EXPECT_EQ(corners(scene, 0)[2], V3f(0, 1, 0));
+    EXPECT_EQ(scene.corner(0, 2).normal, V3f(0, 0, 1));
+}
+
+TEST(Gltf, SparseAccessorReplacesItsElements) {
+    GltfBuilder file;
+    const int positions = file.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+    const std::vector<uint16_t> which{2};
+    const std::vector<float> value{0, 5, 0};
+    const int index_view = file.view(which.data(), 2);
+    const int value_view = file.view(value.data(), 12);
+    file.json["accessors"][0]["sparse"] = {{"count", 1},
+                                           {"indices", {{"bufferView", index_view}, {"componentType", 5123}}},
+                                           {"values", {{"bufferView", value_view}}}};
+    file.append("nodes", {{"mesh", file.mesh({{"POSITION", positions}})}});
+    EXPECT_EQ(corners(load(file).scene, 0), (std::array{V3f(0, 0, 0), V3f(1, 0, 0), V3f(0, 5, 0)}));
+}
+
+TEST(Gltf, NormalisedIntegersBecomeReal) {
+    GltfBuilder file;
+    const int positions = file.accessor<int16_t>({0, 0, 0, 2, 0, 0, 0, 3, 0}, "VEC3");
+    file.json["extensionsRequired"] = {"KHR_mesh_quantization"};
+    file.json["extensionsUsed"] = {"KHR_mesh_quantization"};
+    const int normals = file.accessor<int8_t>({0, 0, 127, 0, 127, 0, 0, 0, -128}, "VEC3", true);
+    const int uvs = file.accessor<uint8_t>({0, 255, 51, 0, 255, 0}, "VEC2", true);
+    file.append("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+    add_image_texture(file, test::PNG_FOUR_COLORS);
+    file.append("nodes",
+                {{"mesh", file.mesh({{"POSITION", positions}, {"NORMAL", normals}, {"TEXCOORD_0", uvs}}, -1,
+                                    {{"material", 0}})}});
+    const Loaded loaded = load(file);
+    EXPECT_EQ(loaded.said.find("warning"), std::string::npos) << loaded.said;
+    EXPECT_EQ(corners(loaded.scene, 0)[2], V3f(0, 3, 0));
+    EXPECT_EQ(loaded.scene.corner(0, 1).normal, V3f(0, 1, 0));
+    EXPECT_EQ(loaded.scene.corner(0, 2).normal, V3f(0, 0, -1));
+    EXPECT_EQ(loaded.scene.corner(0, 0).uv, V2f(0, 1));
+    EXPECT_FLOAT_EQ(loaded.scene.corner(0, 1).uv.x, 0.2f);
+}
+
+TEST(Gltf, MissingNormalsAreZero) {
+    GltfBuilder file;
+    file.add_triangle();
+    EXPECT_EQ(load(file).scene.corner(0, 0).normal, V3f(0, 0, 0));
+}
+
+TEST(Gltf, HierarchyMultipliesFromTheRoot) {
+    // Quarter turn about z, then a shift: (1,0,0) -> (0,1,0) -> scaled by the parent -> shifted.
+    const double h = std::sqrt(0.5);
+    GltfBuilder file = triangle_on_node({{"rotation", {0, 0, h, h}}, {"translation", {0, 0, 1}}});
+    file.append("nodes", {{"children", {0}}, {"scale", {2, 3, 4}}, {"translation", {10, 0, 0}}});
+    const Scene scene = load(file).scene;
+    expect_near(scene.corner(0, 0).position, V3f(10, 0, 4));
+    expect_near(scene.corner(0, 1).position, V3f(10, 3, 4));
+    expect_near(scene.corner(0, 2).position, V3f(8, 0, 4));
+    EXPECT_EQ(scene.objects.size(), 1u);
+}
+
+TEST(Gltf, MatrixEqualsItsParts) {
+    const double h = std::sqrt(0.5);
+    const Scene parts =
+        load(triangle_on_node({{"rotation", {0, h, 0, h}}, {"scale", {2, 3, 4}}, {"translation", {5, 6, 7}}}))
+            .scene;
+    // Columns: images of x (0,0,-2), y (0,3,0), z (4,0,0), origin (5,6,7).
+    const Scene matrix =
+        load(triangle_on_node({{"matrix", {0, 0, -2, 0, 0, 3, 0, 0, 4, 0, 0, 0, 5, 6, 7, 1}}})).scene;
+    for (int i = 0; i < 3; ++i) {
+        expect_near(parts.corner(0, i).position, matrix.corner(0, i).position);
+        expect_near(parts.corner(0, i).normal, matrix.corner(0, i).normal);
+    }
+    expect_near(matrix.corner(0, 1).position, V3f(5, 6, 5));
+    expect_near(matrix.corner(0, 0).normal, V3f(1, 0, 0));
+}
+
+TEST(Gltf, NormalsTakeTheInverseTranspose) {
+    GltfBuilder file;
+    const int positions = file.accessor<float>({1, 0, 0, 0, 1, 0, 0, 0, 1}, "VEC3");
+    const float n = std::sqrt(1.0f / 3);
+    const int normals = file.accessor<float>({n, n, n, n, n, n, n, n, n}, "VEC3");
+    file.append("nodes",
+                {{"mesh", file.mesh({{"POSITION", positions}, {"NORMAL", normals}})}, {"scale", {4, 1, 1}}});
+    const Scene scene = load(file).scene;
+    expect_near(scene.corner(0, 0).normal, V3f(geometric_normal(scene, 0)));
+}
+
+TEST(Gltf, MirroringKeepsFrontAndNormalsTogether) {
+    for (const json& scale : {json{-1, 1, 1}, json{1, 1, -2}, json{-3, -1, -1}, json{-1, -1, 1}}) {
+        const Scene scene = load(triangle_on_node({{"scale", scale}})).scene;
+        const V3d front = geometric_normal(scene, 0);
+        for (int i = 0; i < 3; ++i)
+            EXPECT_NEAR(front.dot(V3d(scene.corner(0, i).normal)), 1, 1e-6) << scale;
+        // The side that was in front in the mesh's own space stays in front.
+        EXPECT_EQ(front.z, scale[2].get<double>() > 0 ? 1 : -1) << scale;
+    }
+}
+
+TEST(Gltf, FlatteningScaleKeepsFacesInItsPlane) {
+    const Loaded loaded = load(triangle_on_node({{"scale", {1, 1, 0}}}));
+    ASSERT_EQ(loaded.scene.triangles.size(), 1u);
+    EXPECT_EQ(loaded.scene.corner(0, 0).normal, V3f(0, 0, 1));
+    const Loaded edge_on = load(triangle_on_node({{"scale", {1, 0, 1}}}));
+    EXPECT_EQ(edge_on.scene.dropped_triangles, 1u);
+}
+
+TEST(Gltf, SharedMeshBecomesSeveralObjects) {
+    GltfBuilder file = triangle_on_node({{"name", "left"}});
+    file.append("nodes", {{"mesh", 0}, {"translation", {5, 0, 0}}});
+    const Scene scene = load(file).scene;
+    ASSERT_EQ(scene.objects.size(), 2u);
+    EXPECT_EQ(scene.objects[0].name, "left");
+    EXPECT_EQ(scene.objects[1].name, "thing");
+    EXPECT_EQ(scene.objects[1].first_triangle, 1u);
+    EXPECT_EQ(scene.objects[1].triangle_count, 1u);
+    EXPECT_EQ(scene.triangles[1].object, 1u);
+    EXPECT_EQ(scene.corner(1, 0).position, V3f(5, 0, 0));
+}
+
+TEST(Gltf, OnlyTheDefaultSceneIsLoaded) {
+    GltfBuilder file = triangle_on_node({{"name", "shown"}});
+    file.append("nodes", {{"mesh", 0}, {"name", "hidden"}});
+    file.json["scenes"] = {{{"nodes", {1}}}, {{"nodes", {0}}}};
+    file.json["scene"] = 1;
+    const Scene scene = load(file).scene;
+    ASSERT_EQ(scene.objects.size(), 1u);
+    EXPECT_EQ(scene.objects[0].name, "shown");
+}
+
+TEST(Gltf, TrianglesWithoutAreaAreDroppedAndCounted) {
+    GltfBuilder file;
+    const int positions =
+        file.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 1, 2, 2, 2}, "VEC3");
+    const int indices = file.accessor<uint8_t>({0, 1, 2, 0, 1, 1, 3, 4, 5}, "SCALAR");
+    file.append("nodes", {{"mesh", file.mesh({{"POSITION", positions}}, indices)}});
+    const Loaded loaded = load(file);
+    EXPECT_EQ(loaded.scene.triangles.size(), 1u);
+    EXPECT_EQ(loaded.scene.dropped_triangles, 2u);
+    EXPECT_EQ(loaded.scene.objects[0].triangle_count, 1u);
+    EXPECT_NE(loaded.said.find("2 triangles without area were dropped"), std::string::npos) << loaded.said;
+}
+
+TEST(Gltf, MaterialFactorsArrive) {
+    const Scene scene =
+        load(with_material(
+                 {{"name", "paint"},
+                  {"doubleSided", true},
+                  {"emissiveFactor", {0.5, 0.25, 1}},
+                  {"pbrMetallicRoughness",
+                   {{"baseColorFactor", {0.1, 0.2, 0.3, 1}},
+                    {"metallicFactor", 0.25},
+                    {"roughnessFactor", 0.75}}},
+                  {"extensions",
+                   {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
+                    {"KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", {1, 2, 0}}}},
+                    {"KHR_materials_transmission", {{"transmissionFactor", 0.125}}}}}}))
+            .scene;
+    ASSERT_EQ(scene.materials.size(), 1u);
+    const Material& material = scene.materials[0];
+    EXPECT_EQ(material.name, "paint");
+    EXPECT_EQ(material.base_color, Rgb(0.1f, 0.2f, 0.3f));
+    EXPECT_EQ(material.metallic, 0.25f);
+    EXPECT_EQ(material.roughness, 0.75f);
+    EXPECT_EQ(material.emission, Rgb(4, 2, 8));
+    EXPECT_EQ(material.specular, 0.5f);
+    EXPECT_EQ(material.specular_color, Rgb(1, 2, 0));
+    EXPECT_EQ(material.transmission, 0.125f);
+    EXPECT_TRUE(material.double_sided);
+    EXPECT_FALSE(material.unlit);
+}
+
+TEST(Gltf, MissingMaterialIsTheDefault) {
+    GltfBuilder file;
+    file.add_triangle();
+    const Scene scene = load(file).scene;
+    ASSERT_EQ(scene.materials.size(), 1u);
+    EXPECT_EQ(scene.materials[0].base_color, Rgb(1, 1, 1));
+    EXPECT_EQ(scene.materials[0].metallic, 1);
+    EXPECT_EQ(scene.materials[0].roughness, 1);
+    EXPECT_FALSE(scene.materials[0].double_sided);
+}
+
+TEST(Gltf, UnlitMaterialDoesNotEmit) {
+    const Scene scene = load(with_material({{"emissiveFactor", {1, 1, 1}},
+                                            {"extensions", {{"KHR_materials_unlit", json::object()}}}}))
+                            .scene;
+    EXPECT_TRUE(scene.materials[0].unlit);
+    EXPECT_EQ(scene.materials[0].emission, Rgb(0, 0, 0));
+}
+
+TEST(Gltf, TextureArrivesWithItsSampler) {
+    GltfBuilder file = with_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+    add_image_texture(file, test::PNG_FOUR_COLORS, {{"magFilter", 9728}, {"wrapS", 33071}, {"wrapT", 33648}});
+    const Scene scene = load(file).scene;
+    ASSERT_EQ(scene.textures.size(), 1u);
+    const Texture& texture = scene.textures[0];
+    EXPECT_EQ(texture.width, 2u);
+    EXPECT_EQ(texture.height, 2u);
+    EXPECT_EQ(texture.rgba,
+              (std::vector<uint8_t>{255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 128, 128, 128, 255}));
+    EXPECT_EQ(texture.filter, TextureFilter::nearest);
+    EXPECT_EQ(texture.wrap_u, Wrap::clamp_to_edge);
+    EXPECT_EQ(texture.wrap_v, Wrap::mirrored_repeat);
+    EXPECT_EQ(scene.materials[0].base_color_texture, 0);
+    EXPECT_EQ(scene.corner(0, 1).uv, V2f(1, 0));
+}
+
+TEST(Gltf, TextureDefaultsToRepeatAndLinear) {
+    GltfBuilder file = with_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+    add_image_texture(file, test::PNG_16_BIT);
+    const Scene scene = load(file).scene;
+    EXPECT_EQ(scene.textures.at(0).wrap_u, Wrap::repeat);
+    EXPECT_EQ(scene.textures.at(0).filter, TextureFilter::linear);
+    EXPECT_EQ(scene.textures.at(0).rgba, (std::vector<uint8_t>{128, 255, 0, 255}));
+}
+
+TEST(Gltf, TextureFileIsFoundBesideTheScene) {
+    const TemporaryFolder folder;
+    GltfBuilder file = with_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+    file.append("images", {{"uri", "four%20colors.png"}});
+    file.append("textures", {{"source", 0}});
+    test::write_file(folder.file("four colors.png"), test::PNG_FOUR_COLORS);
+    EXPECT_EQ(load_gltf(file.write_gltf(folder.file("test.gltf"))).textures.at(0).width, 2u);
+}
+
+TEST(Gltf, TextureTransformAndSetApplyToCoordinates) {
+    GltfBuilder file;
+    const int positions = file.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+    const int unused = file.accessor<float>({9, 9, 9, 9, 9, 9}, "VEC2");
+    const int uvs = file.accessor<float>({0, 0, 1, 0, 0, 1}, "VEC2");
+    // The specification's example: the lower left quadrant, turned by 90 degrees.
+    file.append("materials", {{"pbrMetallicRoughness",
+                               {{"baseColorTexture",
+                                 {{"index", 0},
+                                  {"texCoord", 0},
+                                  {"extensions",
+                                   {{"KHR_texture_transform",
+                                     {{"offset", {0, 1}},
+                                      {"rotation", std::numbers::pi / 2},
+                                      {"scale", {0.5, 0.5}},
+                                      {"texCoord", 1}}}}}}}}}});
+    add_image_texture(file, test::PNG_FOUR_COLORS);
+    file.append("nodes",
+                {{"mesh", file.mesh({{"POSITION", positions}, {"TEXCOORD_0", unused}, {"TEXCOORD_1", uvs}},
+                                    -1, {{"material", 0}})}});
+    const Scene scene = load(file).scene;
+    expect_near(V3f(scene.corner(0, 0).uv.x, scene.corner(0, 0).uv.y, 0), V3f(0, 1, 0));
+    expect_near(V3f(scene.corner(0, 1).uv.x, scene.corner(0, 1).uv.y, 0), V3f(0, 0.5f, 0));
+    expect_near(V3f(scene.corner(0, 2).uv.x, scene.corner(0, 2).uv.y, 0), V3f(0.5f, 1, 0));
+}
+
+TEST(Gltf, LightsTakeTheirNodesPlace) {
+    GltfBuilder file = triangle_on_node({});
+    const double h = std::sqrt(0.5);
+    file.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 10}, {"range", 7}},
+        {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}, {"name", "torch"}},
+        {{"type", "directional"}, {"intensity", 3}}};
+    file.append("nodes",
+                {{"translation", {1, 2, 3}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    // A quarter turn about x takes -z to +y; the scale changes nothing.
+    file.append("nodes", {{"rotation", {h, 0, 0, h}},
+                          {"scale", {5, 5, 5}},
+                          {"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
+    file.append("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", 2}}}}}});
+    const Scene scene = load(file).scene;
+    ASSERT_EQ(scene.lights.size(), 3u);
+    EXPECT_EQ(scene.lights[0].type, LightType::point);
+    EXPECT_EQ(scene.lights[0].position, V3f(1, 2, 3));
+    EXPECT_EQ(scene.lights[0].intensity, Rgb(10, 5, 0));
+    EXPECT_EQ(scene.lights[0].range, 7);
+    EXPECT_EQ(scene.lights[1].type, LightType::spot);
+    EXPECT_EQ(scene.lights[1].name, "torch");
+    expect_near(scene.lights[1].direction, V3f(0, 1, 0));
+    EXPECT_FLOAT_EQ(scene.lights[1].cos_inner, std::cos(0.25f));
+    EXPECT_FLOAT_EQ(scene.lights[1].cos_outer, std::cos(0.5f));
+    EXPECT_EQ(scene.lights[2].type, LightType::directional);
+    EXPECT_EQ(scene.lights[2].direction, V3f(0, 0, -1));
+    EXPECT_EQ(scene.lights[2].intensity, Rgb(3, 3, 3));
+}
+
+TEST(Gltf, UnsupportedThingsAreNamedOnceWithACount) {
+    GltfBuilder file;
+    const int positions = file.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+    add_image_texture(file, test::PNG_FOUR_COLORS);
+    for (int i = 0; i < 2; ++i) {
+        file.append("materials", {{"alphaMode", "BLEND"},
+                                  {"normalTexture", {{"index", 0}}},
+                                  {"occlusionTexture", {{"index", 0}}},
+                                  {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+                                  {"extensions",
+                                   {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                                    {"KHR_materials_ior", {{"ior", 1.3}}}}}});
+        file.append("nodes",
+                    {{"mesh", file.mesh({{"POSITION", positions}, {"COLOR_0", positions}}, -1,
+                                        {{"material", i}, {"targets", {{{"POSITION", positions}}}}})},
+                     {"skin", 0}});
+        file.append("nodes", {{"mesh", file.mesh({{"POSITION", positions}}, -1, {{"mode", 1}})}});
+    }
+    file.json["skins"] = {{{"joints", {0}}}};
+    file.json["extensionsUsed"] = {"EXT_mesh_gpu_instancing", "KHR_materials_unlit"};
+    const std::string said = load(file).said;
+    for (const char* expected :
+         {"normal maps are not supported yet and are ignored (2 materials)",
+          "alphaMode BLEND is not supported yet", "occlusion textures are ignored",
+          "rendered as a thin clear pane (2 materials)",
+          "vertex colours are not supported yet and are ignored (2 primitives)",
+          "morph targets are not supported", "skins are not supported",
+          "points and lines are not rendered (2 primitives)", "indices of refraction",
+          "meets a mesh without texture coordinates (2 primitives)", "the extension EXT_mesh_gpu_instancing"})
+        EXPECT_NE(said.find(expected), std::string::npos) << expected << "\nin\n" << said;
+    EXPECT_EQ(said.find("KHR_materials_unlit"), std::string::npos);
+    EXPECT_EQ(said.find("normal maps"), said.rfind("normal maps"));
+}
+
+TEST(Gltf, UnsupportedTexturesStandInWithTheirMean) {
+    GltfBuilder file =
+        with_material({{"emissiveFactor", {1, 1, 1}},
+                       {"emissiveTexture", {{"index", 0}}},
+                       {"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 0}}}}}});
+    add_image_texture(file, test::PNG_FOUR_COLORS);
+    const Loaded loaded = load(file);
+    const Material& material = loaded.scene.materials.at(0);
+    const float mean = (1 + 128 / 255.0f) / 4;  // of green and of blue: one texel full, one 128
+    EXPECT_FLOAT_EQ(material.roughness, mean);
+    EXPECT_FLOAT_EQ(material.metallic, mean);
+    EXPECT_FLOAT_EQ(material.emission.x, static_cast<float>((1 + srgb_to_linear(128)) / 4));
+    EXPECT_NE(loaded.said.find("their mean colour is used (1 material)"), std::string::npos) << loaded.said;
+    EXPECT_TRUE(loaded.scene.textures.empty());
+}
+
+TEST(Gltf, TextFormWithEitherBufferEqualsBinary) {
+    const TemporaryFolder folder;
+    const GltfBuilder file = triangle_on_node({{"translation", {1, 0, 0}}});
+    const std::string text = file.gltf_text("data.bin");
+    test::write_file(folder.file("external.gltf"), {text.begin(), text.end()});
+    test::write_file(folder.file("data.bin"), file.buffer);
+    for (const std::string& path : {file.write_glb(folder.file("a.glb")),
+                                    file.write_gltf(folder.file("b.gltf")), folder.file("external.gltf")}) {
+        const Scene scene = load_gltf(path);
+        ASSERT_EQ(scene.triangles.size(), 1u) << path;
+        EXPECT_EQ(scene.corner(0, 1).position, V3f(2, 0, 0));
+        EXPECT_EQ(scene.name, std::filesystem::path(path).filename().string());
+    }
+}
+
+TEST(Gltf, EmptySceneLoadsWithAWarning) {
+    const Loaded loaded = load(GltfBuilder{});
+    EXPECT_TRUE(loaded.scene.triangles.empty());
+    EXPECT_TRUE(loaded.scene.bounds.isEmpty());
+    EXPECT_EQ(loaded.scene.cameras.size(), 1u);
+    EXPECT_NE(loaded.said.find("no triangles"), std::string::npos);
+}
+
+TEST(SceneFile, FolderMeansTheSceneOfItsName) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directories(folder.path() / "kitchen");
+    EXPECT_INPUT_ERROR(find_scene_file(folder.path() / "kitchen"), "no scene of its own name");
+    GltfBuilder file;
+    file.write_gltf(folder.file("kitchen/kitchen.gltf"));
+    EXPECT_EQ(find_scene_file(folder.path() / "kitchen").filename(), "kitchen.gltf");
+    EXPECT_EQ(find_scene_file(folder.file("kitchen/")).filename(), "kitchen.gltf");
+    file.write_glb(folder.file("kitchen/kitchen.glb"));
+    EXPECT_EQ(find_scene_file(folder.path() / "kitchen").filename(), "kitchen.glb");
+    EXPECT_EQ(find_scene_file(folder.file("kitchen/kitchen.gltf")), folder.file("kitchen/kitchen.gltf"));
+    EXPECT_INPUT_ERROR(find_scene_file(folder.file("missing")), "no such scene file or folder");
+}
+
+}  // namespace
+}  // namespace obscura

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers for people, and what a progress report prints to a terminal, to a log and with --quiet.
+#include "base/progress.h"
+
+#include <gtest/gtest.h>
+#include <pty.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+#include <thread>
+
+#include "base/log.h"
+
+namespace obscura {
+namespace {
+
+constexpr std::chrono::milliseconds LONGER_THAN_BAR_PERIOD{120};
+
+// Standard error is a terminal while this lives; what was printed to it can be read.
+class FakeTerminal {
+  public:
+    FakeTerminal() : saved_(::dup(STDERR_FILENO)) {
+        int slave = -1;
+        EXPECT_EQ(::openpty(&master_, &slave, nullptr, nullptr, nullptr), 0);
+        ::dup2(slave, STDERR_FILENO);
+        ::close(slave);
+    }
+    ~FakeTerminal() {
+        ::close(master_);
+        ::dup2(saved_, STDERR_FILENO);
+        ::close(saved_);
+    }
+    FakeTerminal(const FakeTerminal&) = delete;
+    FakeTerminal& operator=(const FakeTerminal&) = delete;
+
+    std::string read() const {
+        std::array<char, 4096> buffer{};
+        const ssize_t count = ::read(master_, buffer.data(), buffer.size());
+        return std::string(buffer.data(), count > 0 ? static_cast<size_t>(count) : 0);
+    }
+
+  private:
+    int saved_;
+    int master_ = -1;
+};
+
+TEST(SiCount, HasThreeDigitsAndAPrefix) {
+    EXPECT_EQ(si_count(0), "0");
+    EXPECT_EQ(si_count(7), "7");
+    EXPECT_EQ(si_count(12.34), "12.3");
+    EXPECT_EQ(si_count(999), "999");
+    EXPECT_EQ(si_count(1000), "1.00 k");
+    EXPECT_EQ(si_count(12345), "12.3 k");
+    EXPECT_EQ(si_count(1234567), "1.23 M");
+    EXPECT_EQ(si_count(999.6e6), "1.00 G");
+    EXPECT_EQ(si_count(35e9), "35.0 G");
+    EXPECT_EQ(si_count(1.8e19), "18.0 E");
+    EXPECT_EQ(si_count(-1500), "-1.50 k");
+}
+
+TEST(DurationText, SuitsTheLength) {
+    EXPECT_EQ(duration_text(0), "0.00 ms");
+    EXPECT_EQ(duration_text(0.01234), "12.3 ms");
+    EXPECT_EQ(duration_text(0.9996), "1.00 s");
+    EXPECT_EQ(duration_text(4.217), "4.22 s");
+    EXPECT_EQ(duration_text(59.96), "1:00");
+    EXPECT_EQ(duration_text(75.3), "1:15");
+    EXPECT_EQ(duration_text(3599.7), "1:00:00");
+    EXPECT_EQ(duration_text(37325), "10:22:05");
+    EXPECT_EQ(duration_text(std::numeric_limits<double>::infinity()), "unlimited time");
+}
+
+TEST(BytesText, UsesBinaryPrefixes) {
+    EXPECT_EQ(bytes_text(0), "0 B");
+    EXPECT_EQ(bytes_text(1023), "1023 B");
+    EXPECT_EQ(bytes_text(1536), "1.5 KiB");
+    EXPECT_EQ(bytes_text(1024 * 1024 - 1), "1 MiB");
+    EXPECT_EQ(bytes_text(1000 * 1024), "1000 KiB");
+    EXPECT_EQ(bytes_text(uint64_t{512} << 20), "512 MiB");
+    EXPECT_EQ(bytes_text(std::numeric_limits<uint64_t>::max()), "16 EiB");
+}
+
+TEST(Progress, OnATerminalDrawsABarAndThenTheTotal) {
+    const FakeTerminal terminal;
+    Progress progress("render", "rays");
+    progress.update(0.1, 100'000);  // too early for a bar
+    std::this_thread::sleep_for(LONGER_THAN_BAR_PERIOD);
+    progress.update(0.5, 1'000'000);
+    const std::string bar = terminal.read();
+    EXPECT_EQ(bar.find("100 k"), std::string::npos);
+    EXPECT_NE(bar.find("render [############............]  50 %"), std::string::npos) << bar;
+    EXPECT_NE(bar.find("rays/s"), std::string::npos) << bar;
+    EXPECT_NE(bar.find(" left"), std::string::npos) << bar;
+    EXPECT_EQ(bar.find('\n'), std::string::npos) << bar;
+    EXPECT_LT(bar.size(), 80u) << bar;
+    progress.finish(2'000'000);
+    progress.finish(2'000'000);
+    progress.update(0.9, 1);
+    const std::string total = terminal.read();
+    EXPECT_EQ(total.find("\r\x1b[Krender: 2.00 M rays in "), 0u) << total;
+    EXPECT_EQ(std::count(total.begin(), total.end(), '\n'), 1) << total;
+}
+
+TEST(Progress, AnAbandonedBarEndsItsLine) {
+    const FakeTerminal terminal;
+    {
+        Progress progress("render", "rays");
+        std::this_thread::sleep_for(LONGER_THAN_BAR_PERIOD);
+        progress.update(0, 0);
+    }
+    const std::string printed = terminal.read();
+    EXPECT_NE(printed.find("time left unknown"), std::string::npos) << printed;
+    EXPECT_EQ(printed.back(), '\n');
+}
+
+TEST(Progress, InALogPrintsPlainLines) {
+    testing::internal::CaptureStderr();
+    {
+        Progress progress("render", "rays");
+        std::this_thread::sleep_for(LONGER_THAN_BAR_PERIOD);
+        progress.update(0.5, 1'000'000);  // lines come every few seconds only
+        progress.finish(2'000'000);
+    }
+    const std::string log = testing::internal::GetCapturedStderr();
+    EXPECT_EQ(log.find("render: 2.00 M rays in "), 0u) << log;
+    EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 1) << log;
+    EXPECT_EQ(log.find('\x1b'), std::string::npos) << log;
+}
+
+TEST(Progress, QuietPrintsNothing) {
+    set_quiet(true);
+    testing::internal::CaptureStderr();
+    {
+        Progress progress("render", "rays");
+        progress.update(0.5, 1);
+        progress.finish(2);
+    }
+    set_quiet(false);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+}  // namespace
+}  // namespace obscura
