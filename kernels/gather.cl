@@ -28,6 +28,19 @@ inline void gather_lights(global const Frame* frame, global const float4* visibi
     if (NEED_GLOSSY) add_to_layer(frame, paths, LAYER_SPECULAR_EMISSION, slot, (float4)(glossy, 0.0f));
 }
 
+// Compensated (Kahan 1965): open directions all add the same number, whose rounding errors would pile up.
+inline float4 sum_results(global const float4* results, uint count) {
+    float4 sum = (float4)(0.0f);
+    float4 excess = (float4)(0.0f);
+    for (uint k = 0u; k < count; ++k) {
+        const float4 value = results[k] - excess;
+        const float4 next = sum + value;
+        excess = (next - sum) - value;
+        sum = next;
+    }
+    return sum;
+}
+
 inline void gather_ambient(global const Frame* frame, global const float4* results, global float4* paths,
                            uint slot, uint depth) {
     const float4 ambient = paths[path_index(frame, PATH_AMBIENT, slot)];
@@ -35,9 +48,7 @@ inline void gather_ambient(global const Frame* frame, global const float4* resul
     float4 w = (float4)(1.0f);
     if (NEED_OBSCURANCE && ambient.w == AMBIENT_TRACED) {
         const uint k_count = frame->sampling.y;
-        float4 sum = (float4)(0.0f);
-        for (uint k = 0u; k < k_count; ++k)
-            sum += results[(size_t)slot * k_count + k];
+        const float4 sum = sum_results(results + (size_t)slot * k_count, k_count);
         w = sum / frame->miss.w;
         const size_t sample = path_index(frame, PATH_SAMPLE, slot);
         if (has_layer(frame, LAYER_OBSCURANCE) && (as_uint(paths[sample].w) & PATH_OBSCURANCE_SEEN) == 0u) {

@@ -4,9 +4,9 @@
 
     tools/check_radiometry.py build/obscura scenes/kitchen [more scenes]
 
-Shares nothing with the program but the definitions in host/scene/*.h: its own glTF reader, PNG decoder, albedo
-quadrature (over microfacet normals instead of directions), texture means (by samples instead of integrals) and
-silhouettes. Exits with 0 if all scenes agree, 1 if one does not, 2 if a scene can't be read. numpy only.
+Shares nothing with the program but the definitions in host/scene/*.h: its own glTF reader, PNG decoder,
+albedo quadrature (over microfacet normals instead of directions), texture means (by samples instead of
+integrals) and silhouettes. Exits with 0 if all scenes agree, 1 if one does not, 2 if a scene can't be read. numpy only.
 """
 import json
 import math
@@ -122,8 +122,9 @@ def compute(path):
             tolerance = max(tolerance, DIRECTIONAL)
     r_ave = reflecting / area if area > 0 else np.zeros(3)
     i_a = emitted / area / (1 - r_ave) if area > 0 else np.zeros(3)
-    return {"triangles": count, "dropped_triangles": dropped, "objects": objects, "area": area, "emitted": emitted,
-            "R_ave": r_ave, "I_A": i_a, "I_A_colourless": r_ave * i_a}, tolerance
+    result = {"triangles": count, "dropped_triangles": dropped, "objects": objects, "area": area,
+              "emitted": emitted, "R_ave": r_ave, "I_A": i_a, "I_A_colourless": r_ave * i_a}
+    return result, tolerance
 
 
 def scene_file(path):
@@ -145,7 +146,7 @@ def check(program, scene):
     print(f"{scene} (tolerance {tolerance:g})")
     for key, value in expected.items():
         value, other = np.atleast_1d(value), np.atleast_1d(found[key])
-        limit = 0 if key in ("triangles", "dropped_triangles", "objects") else EXACT if key == "area" else tolerance
+        limit = {"triangles": 0, "dropped_triangles": 0, "objects": 0, "area": EXACT}.get(key, tolerance)
         scale = np.maximum(np.abs(value), np.abs(other))
         error = np.max(np.abs(value - other) / np.where(scale > 0, scale, 1))
         agree &= bool(error <= limit)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The reflection model of tools/check_radiometry.py: mean albedos by an integral over microfacet normals (the program
-integrates over directions), materials, and texture means by samples (the program has exact integrals)."""
+"""The reflection model of tools/check_radiometry.py: mean albedos by an integral over microfacet normals (the
+program integrates over directions), materials, and texture means by samples (the program has exact integrals)."""
 import math
 
 import numpy as np
@@ -15,7 +15,7 @@ SAMPLES = 4e6  # of the texture on one mesh, at least
 def albedo_nodes(row):
     """A and B at the table's 32 cosines for sqrt(alpha) = row / 31: integrals over microfacet normals h.
 
-    a(mu) = int F(o.h) G2(o, i) (o.h) / (mu cos theta_h) D cos theta_h dh, with tan^2 theta_h = alpha^2 u / (1 - u)
+    a(mu) = int F(o.h) G2(o, i) (o.h) / (mu cos theta_h) D cos theta_h dh, tan^2 theta_h = alpha^2 u / (1 - u),
     so that D cos theta_h dh = du dphi / (2 pi). Reflected directions stay above the surface while
     cos phi > limit(theta_h); both integrals end, and the outer one is split, where that condition changes.
     """
@@ -101,7 +101,8 @@ class Material:
         self.alpha = 0.0 if roughness32 < MIRROR_ROUGHNESS else float(roughness32) ** 2
         factor = float(float32(specular.get("specularFactor", 1)))
         color = float32(specular.get("specularColorFactor", [1, 1, 1]))
-        transmission = float(float32(extensions.get("KHR_materials_transmission", {}).get("transmissionFactor", 0)))
+        transmission = extensions.get("KHR_materials_transmission", {}).get("transmissionFactor", 0)
+        transmission = float(float32(transmission))
         self.sides = 2 if m.get("doubleSided") else 1
         self.unlit = "KHR_materials_unlit" in extensions
         strength = extensions.get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1)
@@ -156,7 +157,7 @@ class Texture:
                 v * ((1 - u) * self.texels[lower, left] + u * self.texels[lower, right]))
 
     def means(self, corners, rng):
-        """Mean colours over n x 3 x 2 corners in uv by stratified samples: two per texel's side, more if few."""
+        """Mean colours over n x 3 x 2 corners in uv by stratified samples: two per texel's side or more."""
         height, width, _ = self.texels.shape
         edges = (corners - np.roll(corners, 1, axis=1)) * [width, height]
         longest = np.linalg.norm(edges, axis=2).max(axis=1)
@@ -171,5 +172,6 @@ class Texture:
                 root = np.sqrt(a)  # uniform in the triangle
                 w0, w1, w2 = 1 - root, root * (1 - b), root * b
                 c = corners[t]
-                result[t] = self.sample(w0[:, None] * c[0] + w1[:, None] * c[1] + w2[:, None] * c[2]).mean(axis=0)
+                uv = w0[:, None] * c[0] + w1[:, None] * c[1] + w2[:, None] * c[2]
+                result[t] = self.sample(uv).mean(axis=0)
         return result

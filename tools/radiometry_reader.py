@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The reader of tools/check_radiometry.py: glTF files and PNG images as numpy arrays, sharing nothing with the program's
-own reader."""
+"""The reader of tools/check_radiometry.py: glTF files and PNG images as numpy arrays, sharing nothing with the
+program's own reader."""
 import base64
 import json
 import math
@@ -130,7 +130,7 @@ def decode_png(data):
 def unfilter(kind, row, previous, step):
     """Undoes PNG's row filters 0 to 4 in place."""
     if kind == 2:
-        row[:] = ((np.frombuffer(row, np.uint8) + np.frombuffer(previous, np.uint8)) & 255).astype(np.uint8).tobytes()
+        row[:] = (np.frombuffer(bytes(row), np.uint8) + np.frombuffer(previous, np.uint8)).tobytes()  # modulo 256
         return
     for i in range(len(row) if kind else 0):
         left = row[i - step] if i >= step else 0
@@ -149,7 +149,8 @@ def unfilter(kind, row, previous, step):
 def local_matrix(node):
     if "matrix" in node:
         return np.array(node["matrix"], float).reshape(4, 4).T
-    x, y, z, w = np.array(node.get("rotation", [0, 0, 0, 1]), float) / np.linalg.norm(node.get("rotation", [0, 0, 0, 1]))
+    quaternion = np.array(node.get("rotation", [0, 0, 0, 1]), float)
+    x, y, z, w = quaternion / np.linalg.norm(quaternion)
     m = np.eye(4)
     m[:3, :3] = np.array([
         [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],

@@ -141,7 +141,8 @@ void print_geometry(const SceneInfo& info) {
 
 void print_lights(const SceneInfo& info) {
     fmt::print("\nLights\n");
-    print_row("area lights", "{} emissive triangles", info.emissive_triangles);
+    print_row("area lights", "{} emissive triangle{}", info.emissive_triangles,
+              info.emissive_triangles == 1 ? "" : "s");
     for (const PunctualLight& light : info.scene.lights) {
         const char* unit = light.type == LightType::directional ? "W/m^2" : "W/sr";
         print_row(

@@ -16,8 +16,8 @@ namespace obscura {
 namespace {
 
 constexpr double TABLE_INTERVAL = 2;  // entries within 1e-4, on average within 2e-6
-// Entries are this much smaller than the integrals, so that 1 - a stays positive in the kernels' float arithmetic,
-// too, where nothing is lost (grazing incidence, Schlick).
+// Entries are this much smaller than the integrals, so that 1 - a stays positive also in the kernels' float
+// arithmetic where nothing is lost (grazing incidence, Schlick).
 constexpr double FLOAT_MARGIN = 1 - 0x1p-21;
 constexpr double LAST = static_cast<double>(AlbedoTable::SIZE - 1);
 

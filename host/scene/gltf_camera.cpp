@@ -19,12 +19,12 @@ M44d rigid(const V3d& right, const V3d& up, const V3d& backward, const V3d& posi
 
 }  // namespace
 
-void append_camera(GltfReader& reader, const tinygltf::Node& node, const M44d& to_world) {
+void append_camera(GltfReader& reader, const tinygltf::Node& node, const std::string& node_place,
+                   const M44d& to_world) {
     if (node.camera < 0) return;
     const auto& cameras = reader.model.cameras;
     if (static_cast<size_t>(node.camera) >= cameras.size())
-        reader.fail("node '" + node.name + "'", "camera {} does not exist; the file has {}.", node.camera,
-                    cameras.size());
+        reader.fail(node_place, "camera {} does not exist; the file has {}.", node.camera, cameras.size());
     const tinygltf::Camera& source = cameras[static_cast<size_t>(node.camera)];
     const std::string place = gltf_place("camera", source.name, static_cast<size_t>(node.camera));
 

@@ -39,14 +39,14 @@ void set_cone(const GltfReader& reader, const std::string& place, const tinygltf
 
 }  // namespace
 
-void append_light(GltfReader& reader, const tinygltf::Node& node, const M44d& to_world) {
+void append_light(GltfReader& reader, const tinygltf::Node& node, const std::string& node_place,
+                  const M44d& to_world) {
     const tinygltf::Value* extension = find_extension(node.extensions, EXTENSION);
     if (extension == nullptr) return;
-    const int index = index_member(reader, "node '" + node.name + "': " + EXTENSION, *extension, "light", -1);
+    const int index = index_member(reader, node_place + ": " + EXTENSION, *extension, "light", -1);
     const auto& lights = reader.model.lights;
     if (index < 0 || static_cast<size_t>(index) >= lights.size())
-        reader.fail("node '" + node.name + "'", "light {} does not exist; the file has {}.", index,
-                    lights.size());
+        reader.fail(node_place, "light {} does not exist; the file has {}.", index, lights.size());
     const tinygltf::Light& source = lights[static_cast<size_t>(index)];
     const std::string place = gltf_place("light", source.name, static_cast<size_t>(index));
 

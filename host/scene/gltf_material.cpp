@@ -10,7 +10,7 @@ namespace obscura {
 
 namespace {
 
-constexpr double UNBOUNDED = std::numeric_limits<float>::max();
+constexpr auto UNBOUNDED = static_cast<double>(std::numeric_limits<float>::max());
 constexpr double DEFAULT_IOR = 1.5;
 
 float checked(const GltfReader& reader, const std::string& place, const char* what, double value,

@@ -90,8 +90,8 @@ void append_node(GltfReader& reader, size_t index, const std::string& place, con
     }
     if (node.skin >= 0)
         reader.notices.add("skins are not supported; the meshes keep the pose in the file", "node");
-    append_camera(reader, node, to_world);
-    append_light(reader, node, to_world);
+    append_camera(reader, node, place, to_world);
+    append_light(reader, node, place, to_world);
 }
 
 }  // namespace

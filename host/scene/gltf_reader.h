@@ -89,9 +89,11 @@ V3d mean_texel(const GltfReader& reader, int texture, const std::string& place, 
 // gltf_mesh.cpp: adds a mesh as one object, its vertices transformed to world space.
 void append_mesh(GltfReader& reader, int mesh, const M44d& to_world, const std::string& object_name);
 
-// gltf_light.cpp, gltf_camera.cpp: the light or camera that a node carries.
-void append_light(GltfReader& reader, const tinygltf::Node& node, const M44d& to_world);
-void append_camera(GltfReader& reader, const tinygltf::Node& node, const M44d& to_world);
+// gltf_light.cpp, gltf_camera.cpp: the light or camera that a node carries, if any; place: the node's.
+void append_light(GltfReader& reader, const tinygltf::Node& node, const std::string& place,
+                  const M44d& to_world);
+void append_camera(GltfReader& reader, const tinygltf::Node& node, const std::string& place,
+                   const M44d& to_world);
 Camera default_camera(const Box3f& bounds);
 
 // gltf_node.cpp: walks the node tree of the file's scene and appends what its nodes carry.

@@ -13,8 +13,8 @@ namespace obscura {
 
 namespace {
 
-// glTF's soft edge of a spot light is t^2, t = clamp((cos - cos_outer) / ramp, 0, 1); KHR_lights_punctual keeps
-// ramp from vanishing like this.
+// glTF's soft edge of a spot light is t^2, t = clamp((cos - cos_outer) / ramp, 0, 1). KHR_lights_punctual
+// keeps ramp from vanishing like this.
 constexpr double SMALLEST_SPOT_RAMP = 0.001;
 
 bool emits(const Material& material) {

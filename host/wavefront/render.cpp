@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <future>
 
 #include "base/error.h"
 #include "bvh/bvh.h"
+#include "film/attributes.h"
 #include "film/develop.h"
 #include "sampling/sample_order.h"
 #include "wavefront/features.h"
@@ -58,6 +60,15 @@ std::vector<uint32_t> wanted_layers(const std::vector<std::string>& names) {
     return layers;
 }
 
+void place_image(Image& image, const RenderSettings& settings, const PixelRect& rect) {
+    image.full_width = static_cast<int32_t>(settings.width);
+    image.full_height = static_cast<int32_t>(settings.height);
+    image.x0 = static_cast<int32_t>(rect.x0);
+    image.y0 = static_cast<int32_t>(rect.y0);
+    image.x1 = static_cast<int32_t>(rect.x1);
+    image.y1 = static_cast<int32_t>(rect.y1);
+}
+
 void describe(const RenderJob& job, const RenderSettings& settings, const Device& device,
               RenderResult& result) {
     const Radiometry& radiometry = result.radiometry;
@@ -65,18 +76,18 @@ void describe(const RenderJob& job, const RenderSettings& settings, const Device
     attributes["software"] = std::string("obscura " OBSCURA_VERSION);
     attributes["scene"] = job.scene.name;
     attributes["camera"] = select_camera(job.scene, settings).name;
-    attributes["worldToCamera"] = select_camera(job.scene, settings).camera_to_world.inverse();
+    attributes[attribute::WORLD_TO_CAMERA] = select_camera(job.scene, settings).camera_to_world.inverse();
     attributes["averageReflectivity"] = radiometry.average_reflectivity;
     attributes["ambientIntensity"] = resolve_ambient(radiometry, settings);
     attributes["falloff"] = falloff_text(settings.falloff);
     attributes["maxDistance"] = result.d_max;
-    attributes["samplesPerPixel"] = int64_t{settings.spp};
+    attributes[attribute::SPP] = int64_t{settings.spp};
     attributes["obscuranceRays"] = int64_t{settings.obscurance_rays};
-    attributes["seed"] = static_cast<int64_t>(settings.seed);
+    attributes[attribute::SEED] = static_cast<int64_t>(settings.seed);
     attributes["sampler"] = std::string(sampler_name(settings.sampler));
     attributes["bleeding"] = std::string(settings.bleeding ? "on" : "off");
-    attributes["device"] = device.name();
-    attributes["renderTimeSeconds"] = result.seconds.render;
+    attributes[attribute::DEVICE] = device.name();
+    attributes[attribute::SECONDS] = result.seconds.render;
     attributes["complete"] = std::string(result.complete ? "yes" : "no");
 }
 
@@ -103,12 +114,13 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     const LayerPlanes planes = assign_planes(result.needs, wanted_layers(job.layers));
     const PixelRect rect = crop_pixels(settings.crop, settings.width, settings.height);
 
-    const Stopwatch build_watch;
-    const Bvh bvh = build_bvh(job.scene);
-    result.seconds.build = build_watch.seconds();
+    // The builder works on one core, the compiler on another.
+    std::future<Bvh> building = std::async(std::launch::async, [&] { return build_bvh(job.scene); });
     const Stopwatch compile_watch;
     const StageKernels kernels = prepare_kernels(library, result.needs, job);
     result.seconds.compile = compile_watch.seconds();
+    const Bvh bvh = building.get();
+    result.seconds.build = bvh.build_seconds;
 
     const Stopwatch upload_watch;
     const SceneArrays arrays = make_scene_arrays(job.scene, settings.filter);
@@ -122,37 +134,36 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
                                     bit_reversed_order(settings.spp));
     result.seconds.upload = upload_watch.seconds();
 
-    result.image.full_width = static_cast<int32_t>(settings.width);
-    result.image.full_height = static_cast<int32_t>(settings.height);
-    result.image.x0 = static_cast<int32_t>(rect.x0);
-    result.image.y0 = static_cast<int32_t>(rect.y0);
-    result.image.x1 = static_cast<int32_t>(rect.x1);
-    result.image.y1 = static_cast<int32_t>(rect.y1);
-
+    place_image(result.image, settings, rect);
     const Stopwatch render_watch;
     Profiler profiler;
     Scheduler scheduler(device, kernels, scene, queues, library.local_size(), profiler);
     scheduler.observe(job.observer);
-    uint64_t pixels_before = 0;
+    const FrameInput input{job.scene,
+                           settings,
+                           result.radiometry,
+                           result.needs,
+                           planes,
+                           static_cast<uint32_t>(arrays.area_lights.size()),
+                           static_cast<uint32_t>(arrays.point_lights.size())};
+    uint64_t samples_before = 0;
     for (const PixelRect& band : bands) {
-        const Frame frame = make_frame({job.scene, settings, result.radiometry, result.needs, planes,
-                                        static_cast<uint32_t>(arrays.area_lights.size()),
-                                        static_cast<uint32_t>(arrays.point_lights.size())},
-                                       band, result.wave_capacity);
         const uint64_t band_samples = uint64_t{band.pixel_count()} * settings.spp;
         const auto report = [&](uint64_t done, const RayCounts& rays) {
             const uint64_t all = uint64_t{rect.pixel_count()} * settings.spp;
-            const uint64_t finished = pixels_before * settings.spp + done;
+            const uint64_t finished = samples_before + done;
             return after_wave(static_cast<double>(finished) / static_cast<double>(all), rays) ||
                    finished == all;
         };
+        const Frame frame = make_frame(input, band, result.wave_capacity);
+        // Once stopped, the remaining bands stay black.
         const uint64_t done = result.complete ? scheduler.render(frame, report) : 0;
         result.complete = result.complete && done == band_samples;
         std::vector<f32x4> sums(size_t{band.pixel_count()} * shape.layer_planes);
         if (done > 0) queues.film.download(sums);
         develop_band({planes, sums, done / band.pixel_count(), done % band.pixel_count()}, job.layers,
                      result.image);
-        pixels_before += band.pixel_count();
+        samples_before += band_samples;
     }
     result.seconds.render = render_watch.seconds();
     result.rays = scheduler.rays();

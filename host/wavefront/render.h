@@ -31,7 +31,7 @@ struct RenderJob {
     DepthObserver observer = {};  // optional
 };
 
-// Wall times, seconds.
+// Wall times, seconds. The BVH is built while the kernels are compiled.
 struct RenderSeconds {
     double build = 0;    // BVH
     double compile = 0;  // kernels, cached or not

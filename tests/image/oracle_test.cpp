@@ -21,7 +21,8 @@ namespace {
 using Oracle = DeviceTest;
 
 constexpr uint64_t SEEDS = 16;
-constexpr uint32_t RAYS = 65536;  // of each seed
+constexpr uint32_t RAYS = 65536;     // of each seed
+constexpr double ROUNDING = 2.5e-7;  // of W: two units in its last place
 // So narrow that all camera rays meet the same point.
 constexpr double POINT_FOV = 1e-6;
 const Rgb COLOR(0.8f, 0.5f, 0.2f);  // of every surface near the point
@@ -31,8 +32,14 @@ const Falloff LINEAR{FalloffKind::linear, 1};
 const Falloff SQRT{FalloffKind::sqrt, 1};
 const Falloff EXP{FalloffKind::exp, 1};
 const std::vector<Falloff> MAIN_FALLOFFS{STEP, LINEAR, SQRT, EXP};
-const std::vector<Falloff> ALL_FALLOFFS{
-    STEP, LINEAR, SQRT, EXP, {FalloffKind::exp, 5}, {FalloffKind::cbrt, 1}, {FalloffKind::expjump, 1}, {FalloffKind::pow, 0.25}};
+const std::vector<Falloff> ALL_FALLOFFS{STEP,
+                                        LINEAR,
+                                        SQRT,
+                                        EXP,
+                                        {FalloffKind::exp, 5},
+                                        {FalloffKind::cbrt, 1},
+                                        {FalloffKind::expjump, 1},
+                                        {FalloffKind::pow, 0.25}};
 
 // A point whose W is known for d_max = 1 m.
 struct Geometry {
@@ -47,15 +54,17 @@ void add_far_black(SceneBuilder& builder) {
     builder.quad({60, 0, 60}, {8, 0, 0}, {0, 0, 8}, builder.material(matte(Rgb(0))));
 }
 
+// Occluders are just large enough to be infinite for d_max, and the floor is small: rays start above it by a distance
+// in proportion to its size, and W would show that.
 void add_floor(SceneBuilder& builder, uint32_t material) {
-    builder.quad({-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, material);
+    builder.quad({-0.05f, 0, 0.05f}, {0.1f, 0, 0}, {0, 0, -0.1f}, material);
 }
 
 Geometry plane_at(float height) {
     SceneBuilder builder;
     const uint32_t material = builder.material(matte(COLOR));
     add_floor(builder, material);
-    builder.quad({-40, height, -40}, {80, 0, 0}, {0, 0, 80}, material);
+    builder.quad({-1.2f, height, -1.2f}, {2.4f, 0, 0}, {0, 0, 2.4f}, material);
     add_far_black(builder);
     builder.camera(V3d(0, static_cast<double>(height) / 2, 0), V3d(0, 0, 0), POINT_FOV);
     const auto w = [height](const Falloff& falloff) {
@@ -70,9 +79,9 @@ Geometry walls(int count) {
     SceneBuilder builder;
     const uint32_t material = builder.material(matte(COLOR));
     add_floor(builder, material);
-    builder.quad({0.25f, -1, -4}, {0, 0, 8}, {0, 3, 0}, material);
-    if (count > 1) builder.quad({-4, -1, 0.25f}, {8, 0, 0}, {0, 3, 0}, material);
-    if (count > 2) builder.quad({-0.25f, -1, -4}, {0, 0, 8}, {0, 3, 0}, material);
+    builder.quad({0.25f, -0.2f, -1.2f}, {0, 0, 2.4f}, {0, 1.4f, 0}, material);
+    if (count > 1) builder.quad({-1.2f, -0.2f, 0.25f}, {2.4f, 0, 0}, {0, 1.4f, 0}, material);
+    if (count > 2) builder.quad({-0.25f, -0.2f, -1.2f}, {0, 0, 2.4f}, {0, 1.4f, 0}, material);
     add_far_black(builder);
     builder.camera(V3d(0, 1, 0), V3d(0, 0, 0), POINT_FOV);
     std::vector<Wall> list;
@@ -104,7 +113,7 @@ const std::vector<Geometry>& geometries() {
 }
 
 RenderSettings one_point(SamplerKind sampler, bool bleeding, const Falloff& falloff, uint32_t rays = RAYS) {
-    RenderSettings settings = picture(1, 1, 1, rays);
+    RenderSettings settings = picture(1, 1, SPP, rays / SPP);
     settings.sampler = sampler;
     settings.bleeding = bleeding;
     settings.falloff = falloff;
@@ -180,15 +189,16 @@ Tables compare_all(SamplerKind sampler, bool bleeding) {
             first_seed += SEEDS;
             const Bracket w = geometry.obscurance(falloff);
             const std::string name = geometry.name + ", " + falloff_text(falloff);
-            tables.z.add(name, found.colourless, w.low, w.high, 0);
-            if (const auto square = squared(falloff); square && w.low == w.high) {
+            tables.z.add(name, found.colourless, w.low, w.high, ROUNDING);
+            // A sphere within reach leaves nothing open to the step: no variance.
+            if (const auto square = squared(falloff); square && w.low == w.high && w.low > 0) {
                 tables.variance.add(found.colourless, w.low, geometry.obscurance(*square).low);
             }
             for (int c = 0; c < 3; ++c) {
                 const double hit = bleeding ? static_cast<double>(COLOR[c]) : 1;
                 const double drop = hit - (bleeding ? found.average_reflectivity[c] : 1);
                 tables.z.add(fmt::format("{}, channel {}", name, c), found.colour[static_cast<size_t>(c)],
-                             hit * w.low - drop * closed.high, hit * w.high - drop * closed.low, 1e-7);
+                             hit * w.low - drop * closed.high, hit * w.high - drop * closed.low, ROUNDING);
             }
         }
     }
@@ -224,14 +234,16 @@ TEST_F(Oracle, ColourlessObscuranceIsTheSameWithBleeding) {
 }
 
 TEST_F(Oracle, OnePercentMoreReachIsDetected) {
-    for (const SamplerKind sampler : {SamplerKind::random, SamplerKind::owen, SamplerKind::lattice}) {
+    for (const SamplerKind sampler : {SamplerKind::random, SamplerKind::owen}) {
         for (const Geometry& geometry : geometries()) {
             RenderSettings settings = one_point(sampler, true, SQRT);
             settings.d_max.value = 1.01;
             ZTable table;
             const Bracket w = geometry.obscurance(SQRT);
-            table.add("sqrt", estimate_point(geometry.scene, settings, 77).colourless, w.low, w.high, 0);
-            EXPECT_FALSE(table.failures().empty()) << geometry.name << ", sampler " << static_cast<int>(sampler);
+            table.add("sqrt", estimate_point(geometry.scene, settings, 77).colourless, w.low, w.high,
+                      ROUNDING);
+            EXPECT_FALSE(table.failures().empty())
+                << geometry.name << ", sampler " << static_cast<int>(sampler);
         }
     }
 }
@@ -246,7 +258,7 @@ TEST_F(Oracle, DomeCentreHasNoVariance) {
     const Scene scene = builder.finish();
     for (const SamplerKind sampler : {SamplerKind::random, SamplerKind::owen, SamplerKind::lattice}) {
         for (const Falloff& falloff : ALL_FALLOFFS) {
-            RenderSettings settings = one_point(sampler, true, falloff, 64);
+            RenderSettings settings = one_point(sampler, true, falloff, SPP);
             settings.d_max.value = 2;
             for (settings.seed = 0; settings.seed < 4; ++settings.seed) {
                 const double w = channel(render(scene, settings, {"ao"}).image, "ao", 0).at(0);
@@ -273,11 +285,26 @@ void expect_open_everywhere(const Scene& scene, double least_coverage) {
     }
 }
 
-TEST_F(Oracle, FloorInEmptySpaceIsOpenExactly) {
+// A floor of `strips` quads side by side: slivers where there are many.
+Scene floor_in_empty_space(const V3f& corner, const V3f& u, const V3f& v, int strips) {
     SceneBuilder builder;
-    builder.quad({-50, 0.3f, 50}, {100, 1, 0}, {0, 2, -100}, builder.material(matte(COLOR)));
+    const uint32_t material = builder.material(matte(COLOR));
+    for (int i = 0; i < strips; ++i) {
+        const float from = static_cast<float>(i) / static_cast<float>(strips);
+        builder.quad(corner + from * v, u, v / static_cast<float>(strips), material);
+    }
     builder.camera(V3d(0, 5, 0), V3d(1, 0, -3));
-    expect_open_everywhere(builder.finish(), 1);
+    return builder.finish();
+}
+
+TEST_F(Oracle, FloorInEmptySpaceIsOpenExactly) {
+    const V3f right(100, 0, 0), back(0, 0, -100);
+    for (const int strips : {1, 16, 256}) {
+        expect_open_everywhere(floor_in_empty_space({-50, 0, 50}, right, back, strips), 1);
+        expect_open_everywhere(floor_in_empty_space({-50, 0.3f, 50}, right, back, strips), 1);
+        expect_open_everywhere(floor_in_empty_space({-50, 0.3f, 50}, {100, 1, 0}, {0, 2, -100}, strips), 1);
+        expect_open_everywhere(floor_in_empty_space({-40, -9, 53}, {97, 11, -20}, {17, 13, -101}, strips), 1);
+    }
 }
 
 TEST_F(Oracle, LoneSmoothConvexMeshIsOpenExactly) {

@@ -68,9 +68,11 @@ inline Scene busy_room() {
     builder.quad({-2, 0, -2}, {4, 0, 0}, {0, 3, 0}, white);
     builder.quad({-2, 0, 2}, {0, 0, -4}, {0, 3, 0}, builder.material(matte(Rgb(0.7f, 0.1f, 0.1f))));
     builder.quad({2, 0, -2}, {0, 0, 4}, {0, 3, 0}, builder.material(matte(Rgb(0.1f, 0.6f, 0.2f))));
-    builder.quad({-0.5f, 2.9f, -0.5f}, {1, 0, 0}, {0, 0, 1}, builder.material(matte(Rgb(0.3f), Rgb(9, 8, 6))));
+    builder.quad({-0.5f, 2.9f, -0.5f}, {1, 0, 0}, {0, 0, 1},
+                 builder.material(matte(Rgb(0.3f), Rgb(9, 8, 6))));
     builder.box({-1.6f, 0, -1.5f}, {-0.8f, 1.2f, -0.7f}, builder.material(glossy));
-    builder.sphere({-1.0f, 0.4f, 0.6f}, 0.4f, 2, builder.material(metal(Rgb(0.9f, 0.7f, 0.3f), 0.4f)), false, true);
+    builder.sphere({-1.0f, 0.4f, 0.6f}, 0.4f, 2, builder.material(metal(Rgb(0.9f, 0.7f, 0.3f), 0.4f)), false,
+                   true);
     builder.sphere({1.0f, 0.6f, -0.8f}, 0.6f, 2, builder.material(metal(Rgb(0.95f), 0)), false, true);
     builder.sphere({0, 0.3f, 0.2f}, 0.3f, 1, white, false, true);
     builder.quad({0.4f, 0, 0.9f}, {1.2f, 0, 0.3f}, {0, 1.5f, 0}, builder.material(clear_pane()));

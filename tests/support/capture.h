@@ -61,7 +61,8 @@ kernel void probe(global const BvhNode* nodes, global const TriangleBlock* block
     // 1 where anything is hit, else 0.
     std::vector<uint8_t> occluded(std::span<const TraceRay> rays) {
         std::vector<uint8_t> blocked;
-        for (const TraceHit& hit : trace(rays, true)) blocked.push_back(hit.primitive != NO_PRIMITIVE ? 1 : 0);
+        for (const TraceHit& hit : trace(rays, true))
+            blocked.push_back(hit.primitive != NO_PRIMITIVE ? 1 : 0);
         return blocked;
     }
 
@@ -76,11 +77,12 @@ kernel void probe(global const BvhNode* nodes, global const TriangleBlock* block
         }
         const Buffer ray_buffer = Buffer::holding(device_, "probe rays", "test", lanes);
         const Buffer hit_buffer(device_, "probe hits", "test", rays.size() * sizeof(f32x4));
-        launch(device_, kernel_, "traversal probe", rays.size(), library_.local_size(), nodes_, blocks_, ray_buffer,
-               hit_buffer, static_cast<uint32_t>(rays.size()), any_hit ? 1u : 0u);
+        launch(device_, kernel_, "traversal probe", rays.size(), library_.local_size(), nodes_, blocks_,
+               ray_buffer, hit_buffer, static_cast<uint32_t>(rays.size()), any_hit ? 1u : 0u);
         std::vector<TraceHit> hits;
         hits.reserve(rays.size());
-        for (const f32x4& lane : hit_buffer.contents<f32x4>()) hits.push_back(hit_of(lane));
+        for (const f32x4& lane : hit_buffer.contents<f32x4>())
+            hits.push_back(hit_of(lane));
         return hits;
     }
 
@@ -101,8 +103,7 @@ struct CapturedRays {
 
 class RayCapture {
   public:
-    RayCapture(Device& device, const Scene& scene)
-        : device_(device), library_(device) {
+    RayCapture(Device& device, const Scene& scene) : device_(device), library_(device) {
         const Bvh bvh = build_bvh(scene);
         nodes_ = Buffer::holding(device, "nodes", "bvh", bvh.nodes);
         blocks_ = Buffer::holding(device, "blocks", "bvh", bvh.blocks);
@@ -153,8 +154,8 @@ kernel void probe(global const Frame* frame, global const BvhNode* nodes, global
         if (count == 0) return captured;
         const uint64_t bytes = LANES * count * sizeof(f32x4);
         if (out_.bytes() < bytes) out_ = Buffer(device_, "probe", "test", bytes);
-        launch(device_, probe_, "obscurance probe", count, library_.local_size(), queues.frame, nodes_, blocks_,
-               queues.points, queues.paths, out_, count, view.depth);
+        launch(device_, probe_, "obscurance probe", count, library_.local_size(), queues.frame, nodes_,
+               blocks_, queues.points, queues.paths, out_, count, view.depth);
         std::vector<f32x4> lanes(LANES * count);
         out_.download(lanes);
         const std::vector<f32x4> results = queues.results.contents<f32x4>();

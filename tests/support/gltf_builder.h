@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small glTF files for tests: JSON that a test fills or breaks, one binary buffer, written as .glb or as .gltf
-// with its buffer as a data URI or a .bin file.
+// Small glTF files for tests: JSON that a test fills or breaks, one binary buffer, written as .glb or as
+// .gltf with its buffer as a data URI or a .bin file.
 #pragma once
 
 #include <array>
@@ -58,7 +58,7 @@ class GltfBuilder {
         nlohmann::json primitive = {{"attributes", attributes}};
         if (indices >= 0) primitive["indices"] = indices;
         if (more.is_object()) primitive.update(more);
-        return append("meshes", {{"name", "thing"}, {"primitives", {primitive}}});
+        return append("meshes", {{"name", "thing"}, {"primitives", nlohmann::json::array({primitive})}});
     }
 
     // One right triangle in z = 0 with its right angle at the origin, as a mesh on a node.
@@ -150,5 +150,43 @@ inline const std::vector<uint8_t> PNG_16_BIT{
     0xe7, 0x8f, 0x9d, 0x00, 0x00, 0x00, 0x0f, 0x49, 0x44, 0x41, 0x54, 0x78, 0xda, 0x63, 0x68,
     0x60, 0xf8, 0xff, 0x9f, 0x81, 0x11, 0x00, 0x0a, 0x01, 0x02, 0x80, 0xa7, 0xa9, 0xda, 0xcb,
     0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+
+// A quad with everything that the reader follows: indices, normals, texture, sparse data, light, camera.
+inline GltfBuilder rich_file() {
+    GltfBuilder file;
+    const int positions = file.accessor<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3");
+    const int normals =
+        file.accessor<int8_t>({0, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0}, "VEC3", true);
+    file.json["accessors"].back()["count"] = 4;
+    file.json["bufferViews"][1]["byteStride"] = 4;
+    const int uvs = file.accessor<uint16_t>({0, 0, 65535, 0, 65535, 65535, 0, 65535}, "VEC2", true);
+    const int indices = file.accessor<uint8_t>({0, 1, 2, 0, 2, 3}, "SCALAR");
+    const std::vector<uint8_t> which{3};
+    const std::vector<float> value{0, 1, 0.5f};
+    const int index_view = file.view(which.data(), which.size());
+    const int value_view = file.view(value.data(), 12);
+    file.json["accessors"][0]["sparse"] = {{"count", 1},
+                                           {"indices", {{"bufferView", index_view}, {"componentType", 5121}}},
+                                           {"values", {{"bufferView", value_view}}}};
+    const int image_view = file.view(PNG_FOUR_COLORS.data(), PNG_FOUR_COLORS.size());
+    file.append("images", {{"bufferView", image_view}, {"mimeType", "image/png"}});
+    file.append("samplers", {{"magFilter", 9728}, {"wrapS", 33071}});
+    file.append("textures", {{"source", 0}, {"sampler", 0}});
+    file.append("materials",
+                {{"pbrMetallicRoughness",
+                  {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}}},
+                 {"emissiveFactor", {1, 1, 1}}});
+    const int mesh = file.mesh({{"POSITION", positions}, {"NORMAL", normals}, {"TEXCOORD_0", uvs}}, indices,
+                               {{"material", 0}});
+    file.append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.6}, {"znear", 0.1}}}});
+    file.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", "spot"}, {"spot", nlohmann::json::object()}}};
+    file.append("nodes", {{"mesh", mesh}, {"scale", {1, 2, -1}}});
+    file.append("nodes", {{"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    file.append("nodes", {{"children", {0, 1}}, {"rotation", {0, 0, 0, 1}}});
+    file.json["scenes"] = {{{"nodes", {2}}}};
+    file.json["scene"] = 0;
+    return file;
+}
 
 }  // namespace obscura::test

@@ -39,11 +39,13 @@ struct Disagreement {
 
     std::string text() const {
         const auto hit = [](const TraceHit& h) {
-            return h.primitive == NO_PRIMITIVE ? std::string("miss") : fmt::format("{} at {:.9g}", h.primitive, h.t);
+            return h.primitive == NO_PRIMITIVE ? std::string("miss")
+                                               : fmt::format("{} at {:.9g}", h.primitive, h.t);
         };
-        return fmt::format("{}: device {}, Embree {}; origin {:.9g} {:.9g} {:.9g} direction {:.9g} {:.9g} {:.9g} t < {}",
-                           outcome_name(outcome), hit(device), hit(embree), ray.origin.x, ray.origin.y, ray.origin.z,
-                           ray.direction.x, ray.direction.y, ray.direction.z, ray.t_max);
+        return fmt::format(
+            "{}: device {}, Embree {}; origin {:.9g} {:.9g} {:.9g} direction {:.9g} {:.9g} {:.9g} t < {}",
+            outcome_name(outcome), hit(device), hit(embree), ray.origin.x, ray.origin.y, ray.origin.z,
+            ray.direction.x, ray.direction.y, ray.direction.z, ray.t_max);
     }
 };
 
@@ -74,12 +76,13 @@ struct Tally {
     }
 
     static std::string header() {
-        return fmt::format("{:<12}{:>10}{:>10}{:>10}{:>7}{:>7}{:>14}{:>14}{:>16}{:>16}\n", "rays", "number", "hits",
-                           "same", "ties", "edges", "Embree wrong", "device wrong", "error / bound", "relative error");
+        return fmt::format("{:<12}{:>10}{:>10}{:>10}{:>7}{:>7}{:>14}{:>14}{:>16}{:>16}\n", "rays", "number",
+                           "hits", "same", "ties", "edges", "Embree wrong", "device wrong", "error / bound",
+                           "relative error");
     }
     std::string row(const std::string& name) const {
-        return fmt::format("{:<12}{:>10}{:>10}{:>10}{:>7}{:>7}{:>14}{:>14}{:>16.3f}{:>16.2e}\n", name, rays, hits,
-                           same, tie, edge, embree_wrong, device_wrong, worst_share, worst_relative);
+        return fmt::format("{:<12}{:>10}{:>10}{:>10}{:>7}{:>7}{:>14}{:>14}{:>16.3f}{:>16.2e}\n", name, rays,
+                           hits, same, tie, edge, embree_wrong, device_wrong, worst_share, worst_relative);
     }
 };
 
@@ -88,7 +91,8 @@ class HitComparison {
     explicit HitComparison(const Scene& scene) : scene_(scene), embree_(scene), oracle_(scene) {
         for (uint32_t i = 0; i < scene.triangles.size(); ++i) {
             const V3d a(scene.corner(i, 0).position);
-            const V3d normal = (V3d(scene.corner(i, 1).position) - a).cross(V3d(scene.corner(i, 2).position) - a);
+            const V3d normal =
+                (V3d(scene.corner(i, 1).position) - a).cross(V3d(scene.corner(i, 2).position) - a);
             planes_.push_back({normal.normalized(), a});
         }
     }
@@ -136,8 +140,8 @@ class HitComparison {
     }
 
     // One ray in `every` is judged even if both agree: they could be wrong together.
-    Tally compare(std::span<const TraceRay> rays, std::span<const TraceHit> device, std::span<const TraceHit> embree,
-                  size_t every = 10000) const {
+    Tally compare(std::span<const TraceRay> rays, std::span<const TraceHit> device,
+                  std::span<const TraceHit> embree, size_t every = 10000) const {
         return tbb::parallel_reduce(
             tbb::blocked_range<size_t>(0, rays.size(), 4096), Tally{},
             [&](const auto& range, Tally tally) {

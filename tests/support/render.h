@@ -30,15 +30,16 @@ struct RenderCut {
     bool portable = false;
 };
 
-inline RenderResult render(const Scene& scene, const RenderSettings& settings, std::vector<std::string> layers = {},
-                           const RenderCut& cut = {}) {
+inline RenderResult render(const Scene& scene, const RenderSettings& settings,
+                           std::vector<std::string> layers = {}, const RenderCut& cut = {}) {
     const RenderJob job{scene, settings, std::move(layers), cut.queue_bytes, cut.wave_size, cut.portable};
     return render_scene(shared_device(), shared_library(cut.local_size), job,
                         [](double, const RayCounts&) { return true; });
 }
 
 // A picture of the given size lit by nothing but what the scene holds.
-inline RenderSettings picture(uint32_t width, uint32_t height, uint32_t spp = 1, uint32_t obscurance_rays = 1) {
+inline RenderSettings picture(uint32_t width, uint32_t height, uint32_t spp = 1,
+                              uint32_t obscurance_rays = 1) {
     RenderSettings settings;
     settings.width = width;
     settings.height = height;

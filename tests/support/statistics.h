@@ -61,13 +61,14 @@ class ZTable {
   public:
     // values: independent estimates of one number that lies in [low, high]; rounding: what float arithmetic may add
     // to each of them.
-    void add(const std::string& name, const std::vector<double>& values, double low, double high, double rounding) {
+    void add(const std::string& name, const std::vector<double>& values, double low, double high,
+             double rounding) {
         const Estimate found = estimate(values);
         degrees_of_freedom_ = static_cast<int>(values.size()) - 1;
         const double outside = std::max({low - found.mean, found.mean - high, 0.0}) - rounding;
-        const double z = outside <= 0                 ? 0
+        const double z = outside <= 0               ? 0
                          : found.standard_error > 0 ? outside / found.standard_error
-                                                     : std::numeric_limits<double>::infinity();
+                                                    : std::numeric_limits<double>::infinity();
         rows_.push_back({name, found, low, high, z});
     }
 
@@ -80,9 +81,9 @@ class ZTable {
         for (const Row& row : rows_) {
             if (row.z <= most) continue;
             lines.push_back(row.name + ": " + std::to_string(row.found.mean) + " +- " +
-                            std::to_string(row.found.standard_error) + ", expected " + std::to_string(row.low) +
-                            " .. " + std::to_string(row.high) + ", |z| " + std::to_string(row.z) + " > " +
-                            std::to_string(most));
+                            std::to_string(row.found.standard_error) + ", expected " +
+                            std::to_string(row.low) + " .. " + std::to_string(row.high) + ", |z| " +
+                            std::to_string(row.z) + " > " + std::to_string(most));
         }
         return lines;
     }

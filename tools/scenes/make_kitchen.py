@@ -11,7 +11,7 @@ from kitchen import (appliances, cabinets, chairs, hob, lamp, room, shelves, sin
 from modelling.gltf import Scene
 
 OBJECTS, TRIANGLES = 203, 28937
-CAMERA = {"eye": (4.22, 1.58, 3.72), "target": (1.35, 0.98, 0.55), "vertical_fov": 48.0}
+CAMERA = {"eye": (4.30, 1.62, 3.80), "target": (1.40, 0.95, 0.60), "vertical_fov": 48.0}
 TABLE_CAMERA = {"eye": (3.62, 1.32, 3.25), "target": (2.25, 0.78, 2.1), "vertical_fov": 40.0}
 MODULES = (room, window, cabinets, sink, hob, appliances, shelves, things, wall, lamp, table, chairs)
 

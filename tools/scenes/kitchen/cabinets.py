@@ -19,30 +19,27 @@ TILE, TILE_GAP = (0.2, 0.1), 0.003
 
 
 def build(scene):
-    handle = Model((p.BRUSHED, bar_handle(0.14)))
+    handle = bar_handle(0.14)
     with scene.group("Back run"):
-        carcass(scene, "back", 0.60, BACK_END, ends=(False, True))
+        carcass(scene, "back", 0.60, BACK_END, ends=(False, True), posts=((0.60, 0.62), (2.60, BACK_END)))
         drawers(scene, "back", 0.62, 1.20, (0.30, 0.25, 0.19), handle)
         drawers(scene, "back right", 1.80, 2.20, (0.19,), handle)
         drawers(scene, "back far right", 2.20, 2.60, (0.19,), handle)
         doors(scene, "back right", (1.80, 2.20, 2.60), 0.19, handle)
-        filler(scene, "back end", 2.60, BACK_END)
-        filler(scene, "back corner", 0.60, 0.62)
     # Seen from its front the window run goes left to right from z = RUN_END to the corner.
     with scene.group("Window run", at=(0, 0, RUN_END), turn=[("y", 90)]):
-        carcass(scene, "window", 0.0, RUN_END - 0.60, ends=(True, False))
+        carcass(scene, "window", 0.0, RUN_END - 0.60, ends=(True, False), posts=((0.0, 0.02), (1.60, 1.62)))
         drawers(scene, "window", 0.02, 0.42, (0.30, 0.25, 0.19), handle)
         doors(scene, "sink", (0.42, 0.87, 1.32), 0.0, handle)
         doors(scene, "pull-out", (1.32, 1.60), 0.0, handle)
-        filler(scene, "window end", 0.0, 0.02)
-        filler(scene, "window corner", 1.60, 1.62)
     worktops(scene)
     splashback(scene)
     uppers(scene)
 
 
-def carcass(scene, name, x0, x1, ends):
-    """What shows in the gaps: the front of the boxes, their underside above the plinth, free ends."""
+def carcass(scene, name, x0, x1, ends, posts):
+    """What shows in the gaps: the front of the boxes, their underside above the plinth, free ends; and the
+    narrow posts that fill up the corners."""
     y0, y1, z = PLINTH, CARCASS_TOP, FRONT
     recess = z - 0.05
     box = quad((x0, y0, z), (x1 - x0, 0, 0), (0, y1 - y0, 0))
@@ -55,8 +52,10 @@ def carcass(scene, name, x0, x1, ends):
     if ends[1]:
         side.extend(quad((x1, y0, z), (0, 0, -z), (0, y1 - y0, 0)))
         plinth.extend(quad((x1, 0, recess), (0, 0, -recess), (0, y0, 0)))
-    scene.add(f"Carcass {name}", Model((p.CARCASS, box), (p.TEAL, side)))
-    scene.add(f"Plinth {name}", Model((p.PLINTH, plinth)))
+    for a, b in posts:
+        strip = plain_front(b - a - GAP / 2, y1 - y0)
+        side.extend(strip.moved((a + b) / 2, (y0 + y1) / 2, FRONT))
+    scene.add(f"Carcass {name}", Model((p.CARCASS, box), (p.PLINTH, plinth), (p.TEAL, side)))
 
 
 def drawers(scene, name, x0, x1, heights, handle):
@@ -68,9 +67,9 @@ def drawers(scene, name, x0, x1, heights, handle):
     for i, height in enumerate(order):
         front = panel_front(width, height - GAP, frame=0.045) if height > 0.2 else plain_front(width, height - GAP)
         y = top - height / 2
-        scene.add(f"Drawer {name} {i + 1}", Model((p.TEAL, front)), at=((x0 + x1) / 2, y, FRONT))
-        lift = 0.0 if height < 0.2 else height / 2 - 0.06
-        scene.add(f"Handle {name} {i + 1}", handle, at=((x0 + x1) / 2, y + min(lift, 0.085), FRONT + 0.02))
+        lift = 0.0 if height < 0.2 else min(height / 2 - 0.06, 0.085)
+        model = Model((p.TEAL, front), (p.BRUSHED, handle.moved(0, lift, 0.02)))
+        scene.add(f"Drawer {name} {i + 1}", model, at=((x0 + x1) / 2, y, FRONT))
         top -= height
 
 
@@ -79,15 +78,11 @@ def doors(scene, name, edges, from_top, handle):
     pairs = list(zip(edges, edges[1:]))
     for i, (x0, x1) in enumerate(pairs):
         front = panel_front(x1 - x0 - GAP, y1 - y0 - GAP)
-        scene.add(f"Door {name} {i + 1}", Model((p.TEAL, front)), at=((x0 + x1) / 2, (y0 + y1) / 2, FRONT))
         hinge_left = len(pairs) > 1 and i == 0
-        x = x1 - 0.03 if hinge_left else x0 + 0.03
-        scene.add(f"Handle {name} door {i + 1}", handle, at=(x, y1 - 0.13, FRONT + 0.02), turn=[("z", 90)])
-
-
-def filler(scene, name, x0, x1):
-    strip = plain_front(x1 - x0 - GAP / 2, CARCASS_TOP - PLINTH)
-    scene.add(f"Filler {name}", Model((p.TEAL, strip)), at=((x0 + x1) / 2, (CARCASS_TOP + PLINTH) / 2, FRONT))
+        x = (x1 - x0) / 2 - 0.03
+        grip = handle.turned(("z", 90)).moved(x if hinge_left else -x, (y1 - y0) / 2 - 0.13, 0.02)
+        scene.add(f"Door {name} {i + 1}", Model((p.TEAL, front), (p.BRUSHED, grip)),
+                  at=((x0 + x1) / 2, (y0 + y1) / 2, FRONT))
 
 
 def worktop_profile(back):
@@ -144,8 +139,8 @@ def tiles(width, height):
 def splashback(scene):
     surface, grout = tiles(BACK_END - 0.02, 0.5)
     scene.add("Splashback", Model((p.SPLASHBACK, surface), (p.GROUT, grout)), at=(0.01, WORKTOP_HEIGHT, 0))
-    surface, grout = tiles(RUN_END - 0.012, 0.1)
-    scene.add("Splashback window", Model((p.SPLASHBACK, surface), (p.GROUT, grout)), at=(0, WORKTOP_HEIGHT, RUN_END),
+    surface, grout = tiles(RUN_END - 0.02, 0.1)
+    scene.add("Splashback window", Model((p.SPLASHBACK, surface), (p.GROUT, grout)), at=(0, WORKTOP_HEIGHT, RUN_END - 0.01),
               turn=[("y", 90)])
 
 
@@ -162,10 +157,11 @@ def upper_box(width, height, depth):
 
 def uppers(scene):
     height = UPPER_Y1 - UPPER_Y0
-    small_knob = Model((p.CHROME, knob(0.014, 0.026)))
+    small_knob = knob(0.014, 0.026, 7)
     with scene.group("Upper cabinets"):
+        basket = lathe([(0.11, -0.0003), (0.125, 0.03), (0.14, 0.12), (0.147, 0.125), (0.144, 0.135), (0.134, 0.12), (0.12, 0.03), (0.0, 0.03)], 16)
+        scene.add("Basket", Model((p.WICKER, basket)), at=(2.05, UPPER_Y1, 0.16))
         for name, x0, x1, y0, y1, depth, count in (
-                ("left", 0.80, 1.18, UPPER_Y0, UPPER_Y1, UPPER_DEPTH, 1),
                 ("right", 1.82, 2.60, UPPER_Y0, UPPER_Y1, UPPER_DEPTH, 2),
                 ("fridge", 2.62, 3.32, 1.86, UPPER_Y1, 0.50, 2)):
             scene.add(f"Upper cabinet {name}", Model((p.LACQUER_WHITE, upper_box(x1 - x0, y1 - y0, depth))),
@@ -174,8 +170,9 @@ def uppers(scene):
             for i in range(count):
                 x = x0 + (i + 0.5) * width
                 front = panel_front(width - GAP, y1 - y0 - GAP)
-                scene.add(f"Upper door {name} {i + 1}", Model((p.LACQUER_WHITE, front)), at=(x, (y0 + y1) / 2, depth + 0.001))
-                side = 1 if count == 1 or i == 0 else -1
-                scene.add(f"Upper knob {name} {i + 1}", small_knob, at=(x + side * (width / 2 - 0.03), y0 + 0.06, depth + 0.021))
+                side = 1 if i == 0 else -1
+                grip = small_knob.moved(side * (width / 2 - 0.03), 0.06 - (y1 - y0) / 2, 0.02)
+                scene.add(f"Upper door {name} {i + 1}", Model((p.LACQUER_WHITE, front), (p.CHROME, grip)),
+                          at=(x, (y0 + y1) / 2, depth + 0.001))
 
 

@@ -29,14 +29,14 @@ def plain_front(width, height, thickness=0.02, bevel=0.002):
     return facing(sweep(rectangle(width, height), [(0.0, 0.0), (0.0, thickness - bevel), (-bevel, thickness)], cap_end=True))
 
 
-def bar_handle(length, reach=0.03, radius=0.005, sides=6):
+def bar_handle(length, reach=0.03, radius=0.005, sides=6, steps=1):
     """Along x, standing out of the plane z = 0."""
     h = length / 2
-    path = bend([(-h, 0.0, -0.001), (-h, 0.0, reach), (h, 0.0, reach), (h, 0.0, -0.001)], 0.014, 2)
+    path = bend([(-h, 0.0, -0.001), (-h, 0.0, reach), (h, 0.0, reach), (h, 0.0, -0.001)], 0.014, steps)
     return tube(path, radius, sides, caps=(False, False), up=(0.0, 1.0, 0.0))
 
 
-def knob(radius, depth, segments=10):
+def knob(radius, depth, segments=8):
     """Faces +z."""
     profile = [(radius * 0.45, -SINK), (radius * 0.45, depth * 0.4), (radius, depth * 0.55), (radius * 0.96, depth * 0.85),
                (radius * 0.6, depth), (0.0, depth)]

@@ -11,15 +11,15 @@ from . import palette as p
 from .kit import ROOM_HEIGHT
 from .table import CENTRE
 
-RIM, RADIUS = 1.62, 0.21  # height of the shade's rim
+RIM, RADIUS = 1.76, 0.21  # height of the shade's rim
 
 
 def build(scene):
     with scene.group("Pendant lamp", at=(CENTRE[0], 0, CENTRE[2])):
         y, r = RIM, RADIUS
         outer = lathe([(r, y), (r * 0.985, y + 0.012), (r * 0.93, y + 0.06), (r * 0.78, y + 0.115), (r * 0.52, y + 0.155), (r * 0.24, y + 0.175), (0.03, y + 0.185),
-                       (0.028, y + 0.23), (0.02, y + 0.24), (0.008, y + 0.242)], 28)
-        inner = lathe([(0.10, y + 0.134), (r * 0.77 - 0.003, y + 0.111), (r * 0.925 - 0.003, y + 0.058), (r * 0.98 - 0.004, y + 0.012), (r, y)], 28)
+                       (0.028, y + 0.23), (0.008, y + 0.242)], 24)
+        inner = lathe([(0.10, y + 0.134), (r * 0.77 - 0.003, y + 0.111), (r * 0.925 - 0.003, y + 0.058), (r * 0.98 - 0.004, y + 0.012), (r, y)], 24)
         scene.add("Lamp shade", Model((p.ORANGE_LACQUER, outer), (p.WHITE_INSIDE, inner)))
         # An octagon of six triangles that faces down and closes the top of the inside.
         ring = [(0.1085 * math.cos(math.pi * k / 4), y + 0.1325, 0.1085 * math.sin(math.pi * k / 4)) for k in range(8)]

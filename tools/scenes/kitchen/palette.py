@@ -6,11 +6,11 @@ from modelling.material import emitter, glass, glossy, matte, metal
 from . import textures
 
 # Room
-WALL_WHITE = matte("White wall", (0.80, 0.79, 0.76))
+WALL_WHITE = matte("White wall", (0.74, 0.73, 0.70))
 WALL_GREEN = matte("Green wall", (0.42, 0.62, 0.34))
 WALL_ORANGE = matte("Terracotta wall", (0.72, 0.36, 0.18))
-CEILING = matte("Ceiling", (0.84, 0.84, 0.83))
-WOODWORK = matte("White woodwork", (0.80, 0.80, 0.78))
+CEILING = matte("Ceiling", (0.79, 0.79, 0.78))
+WOODWORK = matte("White woodwork", (0.76, 0.76, 0.74))
 FLOOR = glossy("Floor tiles", (1.0, 1.0, 1.0), 0.25, texture=textures.FLOOR_TILES)
 SPLASHBACK = glossy("Glazed tiles", (0.80, 0.80, 0.77), 0.08)
 GROUT = matte("Grout", (0.45, 0.44, 0.42))
@@ -25,6 +25,8 @@ TABLE_WOOD = glossy("Varnished pine", (1.0, 1.0, 1.0), 0.2, texture=textures.PIN
 WOOD = matte("Beech", (0.62, 0.42, 0.24))
 DARK_WOOD = matte("Walnut", (0.25, 0.13, 0.07))
 
+WICKER = matte("Wicker", (0.58, 0.40, 0.20))
+
 # Metals and glass
 CHROME = metal("Chrome", (0.83, 0.83, 0.84), 0.0)
 STEEL = metal("Polished steel", (0.74, 0.74, 0.75), 0.08)
@@ -36,6 +38,7 @@ IRON = matte("Cast iron", (0.06, 0.06, 0.065))
 BLACK_GLASS = glossy("Black glass", (0.02, 0.02, 0.022), 0.0)
 BLACK = matte("Black plastic", (0.05, 0.05, 0.05))
 GLASS = glass("Clear glass")
+BLUE_GLASS = glass("Blue glass", (0.62, 0.82, 0.90))
 GREEN_GLASS = glass("Green glass", (0.42, 0.78, 0.40))
 BROWN_GLASS = glass("Amber glass", (0.80, 0.42, 0.12))
 
@@ -87,5 +90,5 @@ BEANS = matte("Kidney beans", (0.36, 0.05, 0.04))
 TOMATO = glossy("Tomato", (0.66, 0.05, 0.02), 0.1)
 
 # Lights: radiance in W/(sr m^2)
-DAYLIGHT = emitter("Daylight", (17.0, 18.5, 20.0))
-LAMPLIGHT = emitter("Lamplight", (62.0, 52.0, 38.0))
+DAYLIGHT = emitter("Daylight", (30.0, 32.5, 35.0))
+LAMPLIGHT = emitter("Lamplight", (70.0, 59.0, 43.0))

@@ -3,16 +3,16 @@
 
 from modelling.shapes import polygon, quad, tube
 from modelling.surface import Model, Surface
-from modelling.sweep import lathe, polyline, sweep
+from modelling.sweep import lathe, polyline, rectangle, sweep
 
 from . import palette as p
 from .kit import ROOM_DEPTH as D
 from .kit import ROOM_HEIGHT as H
 from .kit import ROOM_WIDTH as W
-from .kit import facing, panel_front
+from .kit import facing
 
 # The window's niche in the wall x = 0.
-NICHE_Z0, NICHE_Z1, NICHE_Y0, NICHE_Y1, NICHE_DEPTH = 0.70, 2.00, 1.05, 2.15, 0.20
+NICHE_Z0, NICHE_Z1, NICHE_Y0, NICHE_Y1, NICHE_DEPTH = 0.62, 1.92, 1.05, 2.15, 0.20
 SILL_TOP = 1.08
 FRIDGE_END, RUN_END = 3.33, 2.22  # where the back and the left wall become free
 DOOR_Z0, DOOR_Z1, DOOR_HEIGHT = 2.35, 3.25, 2.05  # in the wall x = W
@@ -72,14 +72,16 @@ def cornice():
 def door(scene):
     width, height = DOOR_Z1 - DOOR_Z0, DOOR_HEIGHT
     with scene.group("Door", at=(W, 0, (DOOR_Z0 + DOOR_Z1) / 2), turn=[("y", -90)]):
-        trim = [(0.06, 0.0), (0.06, 0.012), (0.05, 0.018), (0.012, 0.018), (0.0, 0.008), (0.0, -0.06)]
+        trim = [(0.06, 0.0), (0.06, 0.012), (0.05, 0.018), (0.012, 0.018), (0.0, 0.008), (0.0, -0.03)]
         h = width / 2
         frame = facing(sweep(polyline([(-h, 0), (-h, -height), (h, -height), (h, 0)]), trim))
         scene.add("Door frame", Model((p.WOODWORK, frame)))
+        # Two recessed panels; the frame's reveal closes the leaf's edges.
+        panel = [(0.0, 0.0), (-0.11, 0.0), (-0.118, -0.009)]
         lower, upper = 0.95, height - 0.95
-        leaf = panel_front(width, lower, 0.03, 0.11).moved(0, lower / 2, -0.06)
-        leaf.extend(panel_front(width, upper, 0.03, 0.11).moved(0, lower + upper / 2, -0.06))
-        scene.add("Door leaf", Model((p.LACQUER_WHITE, leaf)))
-        rose = facing(lathe([(0.026, 0.0), (0.026, 0.006), (0.022, 0.009), (0.009, 0.01), (0.009, 0.05)], 12))
+        leaf = facing(sweep(rectangle(width, lower), panel, cap_end=True)).moved(0, lower / 2, -0.03)
+        leaf.extend(facing(sweep(rectangle(width, upper), panel, cap_end=True)).moved(0, lower + upper / 2, -0.03))
+        rose = facing(lathe([(0.026, 0.0), (0.026, 0.006), (0.022, 0.009), (0.009, 0.01), (0.009, 0.05)], 8))
         lever = tube([(0, 0, 0.045), (-0.03, 0, 0.05), (-0.11, 0, 0.048)], [0.009, 0.009, 0.007], 8, up=(0, 1, 0))
-        scene.add("Door handle", Model((p.CHROME, rose), (p.CHROME, lever)), at=(h - 0.07, 1.02, -0.0302))
+        handle = rose.extend(lever).moved(h - 0.055, 1.02, -0.0302)
+        scene.add("Door leaf", Model((p.LACQUER_WHITE, leaf), (p.CHROME, handle)))

@@ -12,7 +12,8 @@ from . import vessels
 from .kit import SINK, TABLE_HEIGHT
 from .textures import noise
 
-CENTRE = (2.30, 0.0, 2.22)
+RUG_HEIGHT = 0.007
+CENTRE = (2.15, RUG_HEIGHT - SINK, 2.15)
 LENGTH, WIDTH = 1.50, 0.90
 # Place settings and their chairs: position of the table's edge in its own frame, turn about y.
 PLACES = ((-0.36, -WIDTH / 2, 180), (0.36, -WIDTH / 2, 180), (-0.36, WIDTH / 2, 0), (0.36, WIDTH / 2, 0))
@@ -25,8 +26,8 @@ def build(scene):
         apron = sweep(rectangle(LENGTH - 0.20, WIDTH - 0.20), [(-0.02, -0.09), (0.0, -0.088), (0.0, 0.0)])
         inside = sweep(rectangle(LENGTH - 0.24, WIDTH - 0.24), [(0.0, 0.0), (0.0, -0.09)])
         scene.add("Table apron", Model((p.WOODWORK, apron), (p.WOODWORK, inside)), at=(0, TABLE_HEIGHT - 0.03, 0))
-        turned = lathe([(0.018, 0.0), (0.022, 0.02), (0.028, 0.3), (0.034, 0.5), (0.026, 0.53), (0.036, 0.55), (0.036, 0.565), (0.03, 0.58), (0.036, 0.60),
-                        (0.036, TABLE_HEIGHT - 0.03)], 12)
+        turned = lathe([(0.018, 0.0), (0.022, 0.02), (0.034, 0.5), (0.026, 0.53), (0.036, 0.55), (0.036, 0.565), (0.03, 0.58), (0.036, 0.60),
+                        (0.036, TABLE_HEIGHT - 0.03)], 10)
         leg = Model((p.WOODWORK, turned))
         for i, (sx, sz) in enumerate(((1, 1), (-1, 1), (-1, -1), (1, -1))):
             scene.add(f"Table leg {i + 1}", leg, at=(sx * (LENGTH / 2 - 0.11), 0, sz * (WIDTH / 2 - 0.11)))
@@ -35,14 +36,14 @@ def build(scene):
             fruit_bowl(scene)
             flowers(scene)
             drinks(scene)
-    rug = sweep(rectangle(2.3, 1.6, 0.01, 1), [(0.0, 0.0), (-0.004, 0.007)], cap_end=True)
+    rug = sweep(rectangle(2.3, 1.9, 0.01, 1), [(0.0, 0.0), (-0.004, RUG_HEIGHT)], cap_end=True)
     scene.add("Rug", Model((p.RUG, rug)), at=(CENTRE[0], 0, CENTRE[2]))
 
 
 def settings(scene):
     mats = (p.RED, p.SKY_BLUE, p.YELLOW_MATTE, p.GREEN)
     plate, soup = vessels.plate(), vessels.bowl(0.075, 0.045)
-    fork_, knife_, spoon_, tumbler, wine = fork(), knife(), spoon(), vessels.tumbler(), vessels.wine_glass()
+    fork_, knife_, spoon_, tumbler = fork(), knife(), spoon(), vessels.tumbler()
     for i, (x, z, turn) in enumerate(PLACES):
         with scene.group(f"Place {i + 1}", at=(x, 0, z), turn=[("y", turn)]):
             mat = sweep(rectangle(0.42, 0.31, 0.02, 2), [(0.0, 0.0), (-0.001, 0.002)], cap_end=True)
@@ -52,10 +53,9 @@ def settings(scene):
             glaze = (p.YELLOW, p.BLUE_GLAZE, p.BLUE_GLAZE, p.YELLOW)[i]
             scene.add(f"Soup bowl {i + 1}", Model((glaze, soup)), at=(0, y + 0.0063 - SINK, -0.18))
             scene.add(f"Fork {i + 1}", fork_, at=(-0.165, y + 0.001, -0.18))
-            scene.add(f"Knife {i + 6}", knife_, at=(0.155, y + 0.0002, -0.18))
+            scene.add(f"Knife {i + 1}", knife_, at=(0.155, y + 0.0002, -0.18))
             scene.add(f"Spoon {i + 1}", spoon_, at=(0.185, y + 0.001, -0.18))
-            scene.add(f"Tumbler {i + 1}", tumbler, at=(0.13, 0, -0.385))
-            scene.add(f"Wine glass {i + 1}", wine, at=(0.04, 0, -0.395))
+            scene.add(f"Tumbler {i + 1}", tumbler, at=(0.13, 0, -0.375))
 
 
 def grip(length):
@@ -80,12 +80,12 @@ def knife():
 
 def spoon():
     path = grip(0.19) + [(0, 0.006, -0.035), (0, 0.005, -0.045), (0, 0.005, -0.065), (0, 0.005, -0.085), (0, 0.006, -0.094)]
-    return Model((p.CHROME, tube(path, [0.0075, 0.006, 0.0035, 0.004, 0.013, 0.019, 0.014, 0.004], 8, flatten=0.2, up=(0, 1, 0))))
+    return Model((p.CHROME, tube(path, [0.0075, 0.006, 0.0035, 0.004, 0.013, 0.019, 0.014, 0.004], 7, flatten=0.2, up=(0, 1, 0))))
 
 
 def fruit_bowl(scene):
     with scene.group("Fruit", at=(0.0, 0, 0.0)):
-        scene.add("Fruit bowl", Model((p.YELLOW, vessels.bowl(0.15, 0.08, 28, 0.006))))
+        scene.add("Fruit bowl", Model((p.YELLOW, vessels.bowl(0.15, 0.08, 25, 0.006))))
         y = 0.016
         orange, lemon = vessels.fruit(0.038), vessels.fruit(0.028, 12, 8, 1.15, 0.0, 0.14)
         apple = vessels.fruit(0.036, 14, 8, 0.9, 0.35)
@@ -103,11 +103,11 @@ def fruit_bowl(scene):
 
 def flowers(scene):
     with scene.group("Flowers", at=(-0.30, 0, 0.0)):
-        vase = lathe([(0.036, 0.0), (0.042, 0.006), (0.05, 0.05), (0.036, 0.10), (0.022, 0.135), (0.026, 0.16), (0.0235, 0.161), (0.019, 0.135), (0.0, 0.12)], 18)
+        vase = lathe([(0.036, 0.0), (0.042, 0.006), (0.05, 0.05), (0.036, 0.10), (0.022, 0.135), (0.026, 0.16), (0.0235, 0.161), (0.019, 0.135), (0.0, 0.12)], 14)
         scene.add("Vase", Model((p.PORCELAIN, vase)))
         petals, hearts, stems = Surface(), Surface(), Surface()
-        for k in range(7):
-            a, lean = 2 * math.pi * k / 7 + 0.3, 0.035 + 0.045 * noise(30, k)
+        for k in range(6):
+            a, lean = 2 * math.pi * k / 6 + 0.3, 0.035 + 0.045 * noise(30, k)
             top = (lean * math.cos(a), 0.27 + 0.06 * noise(31, k), lean * math.sin(a))
             stems.extend(tube([(0, 0.11, 0), (top[0] * 0.3, 0.19, top[2] * 0.3), top], 0.0018, 4, caps=(False, False), up=(1, 0, 0)))
             tilt = 35 + 20 * noise(32, k)
@@ -119,13 +119,13 @@ def flowers(scene):
 
 
 def drinks(scene):
-    jug = lathe([(0.045, 0.0), (0.05, 0.006), (0.058, 0.05), (0.052, 0.12), (0.04, 0.17), (0.042, 0.205), (0.048, 0.225)], 20)
+    jug = lathe([(0.045, 0.0), (0.05, 0.006), (0.058, 0.05), (0.052, 0.12), (0.04, 0.17), (0.042, 0.205), (0.048, 0.225)], 16)
     ear = tube([(0.05, 0.19, 0), (0.085, 0.185, 0), (0.095, 0.14, 0), (0.08, 0.09, 0), (0.056, 0.075, 0)], 0.006, 7, caps=(False, False), up=(0, 0, 1))
-    juice = lathe([(0.044, 0.003), (0.049, 0.008), (0.0568, 0.05), (0.0525, 0.11), (0.0, 0.11)], 20)
+    juice = lathe([(0.044, 0.003), (0.049, 0.008), (0.0568, 0.05), (0.0525, 0.11), (0.0, 0.11)], 16)
     scene.add("Jug", Model((p.GLASS, jug), (p.GLASS, ear), (p.PEEL_ORANGE, juice)), at=(0.30, 0, 0.03), turn=[("y", 40)])
-    mill = lathe([(0.018, 0.0), (0.02, 0.005), (0.013, 0.04), (0.016, 0.055)], 12)
-    cap = lathe([(0.0165, 0.055), (0.014, 0.066), (0.0, 0.07)], 12)
-    for name, x, z, clay in (("Salt", 0.205, 0.085, p.PORCELAIN), ("Pepper", 0.215, -0.075, p.TERRACOTTA)):
+    mill = lathe([(0.018, 0.0), (0.02, 0.005), (0.013, 0.04), (0.016, 0.055)], 10)
+    cap = lathe([(0.0165, 0.055), (0.014, 0.066), (0.0, 0.07)], 10)
+    for name, x, z, clay in (("Salt", 0.195, 0.10, p.PORCELAIN), ("Pepper", 0.242, 0.118, p.TERRACOTTA)):
         scene.add(name, Model((clay, mill), (p.CHROME, cap)), at=(x, 0, z))
 
 

@@ -28,18 +28,18 @@ def build(scene):
 
 def utensils(scene):
     with scene.group("Utensils", at=(0.72, 0, 0.20)):
-        pot = lathe([(0.05, 0.0), (0.055, 0.006), (0.06, 0.13), (0.062, 0.15), (0.059, 0.152), (0.056, 0.148), (0.05, 0.02), (0.0, 0.02)], 16)
+        pot = lathe([(0.05, 0.0), (0.055, 0.006), (0.06, 0.13), (0.062, 0.15), (0.059, 0.152), (0.056, 0.148), (0.05, 0.02), (0.0, 0.02)], 14)
         scene.add("Utensil pot", Model((p.ORANGE, pot)))
         handle = lambda length, r: tube([(0, 0, 0), (0, length * 0.5, 0), (0, length, 0)], [r, r * 0.9, r * 0.8], 6, caps=(False, True), up=(0, 0, 1))
-        bowl = vessels.fruit(0.03, 10, 6, 1.3, 0.0)
+        bowl = vessels.fruit(0.03, 8, 6, 1.3, 0.0)
         spoon = Surface().extend(handle(0.24, 0.006)).extend(bowl.moved(0, 0.235, 0))
         spatula = Surface().extend(handle(0.22, 0.006)).extend(slab(0.06, 0.006, 0.09, 0.002, bottom=True).moved(0, 0.218, 0))
-        ladle = Model((p.STEEL, handle(0.27, 0.005)), (p.STEEL, vessels.bowl(0.036, 0.036, 12, 0.002).turned(("z", 90)).moved(0.03, 0.265, 0)))
+        ladle = Model((p.STEEL, handle(0.27, 0.005)), (p.STEEL, vessels.bowl(0.036, 0.036, 9, 0.002).turned(("z", 90)).moved(0.03, 0.265, 0)))
         whisk = Surface().extend(handle(0.14, 0.008))
-        for k in range(4):
-            a = math.pi * k / 4
-            loop = [(0.034 * math.sin(math.pi * s / 8) * c, 0.14 + 0.07 * (1 - math.cos(math.pi * s / 8)), 0.034 * math.sin(math.pi * s / 8) * d)
-                    for s in range(9) for c, d in ((math.cos(a), math.sin(a)),)]
+        for k in range(3):
+            a = math.pi * k / 3
+            loop = [(0.034 * math.sin(math.pi * s / 5) * c, 0.14 + 0.07 * (1 - math.cos(math.pi * s / 5)), 0.034 * math.sin(math.pi * s / 5) * d)
+                    for s in range(6) for c, d in ((math.cos(a), math.sin(a)),)]
             back = [(-x, y, -z) for x, y, z in loop[-2::-1]]
             whisk.extend(tube(loop + back, 0.0014, 4, caps=(False, False), up=(0.3, 0.1, 1.0)))
         for name, model, turn, place in (
@@ -57,7 +57,7 @@ def bottles(scene):
             ("Wine", 0.875, 0.09, vessels.bottle(p.GREEN_GLASS, 0.038, 0.31, 0.014, cap=p.VIOLET))):
         scene.add(name, model, at=(x, 0, z))
     mill = lathe([(0.027, 0.0), (0.028, 0.015), (0.02, 0.05), (0.018, 0.09), (0.024, 0.12), (0.024, 0.135), (0.02, 0.14), (0.022, 0.155), (0.014, 0.175),
-                  (0.0, 0.18)], 14)
+                  (0.0, 0.18)], 10)
     scene.add("Pepper mill", Model((p.DARK_WOOD, mill)), at=(1.03, 0, 0.24))
 
 
@@ -70,10 +70,7 @@ def knives(scene):
         for k in range(5):
             x, z = (-0.03 + 0.03 * k, 0.03) if k < 3 else (-0.015 + 0.03 * (k - 3), -0.03)
             grip = sweep(rectangle(0.016, 0.026, 0.005, 1), [(0.0, -0.001), (0.0, 0.07), (-0.004, 0.078)], cap_end=True)
-            bolster = sweep(rectangle(0.014, 0.024, 0.003, 1), [(0.0, -0.012), (0.0, 0.0)])
-            knife = Model((p.BLACK, grip.moved(x, 0.21, z).turned(("x", -18)).moved(0, 0.02, 0)),
-                          (p.STEEL, bolster.moved(x, 0.21, z).turned(("x", -18)).moved(0, 0.02, 0)))
-            scene.add(f"Knife {k + 1}", knife)
+            scene.add(f"Kitchen knife {k + 1}", Model((p.BLACK, grip.moved(x, 0.20, z).turned(("x", -18)).moved(0, 0.02, 0))))
 
 
 def bread(scene):
@@ -89,28 +86,27 @@ def bread(scene):
         blade = sweep(rectangle(0.17, 0.026), [(0.0, 0.0), (-0.0008, 0.0016)], cap_end=True)
         grip = sweep(rectangle(0.11, 0.022, 0.006, 2), [(0.0, -0.001), (0.0, 0.008), (-0.004, 0.012)], cap_end=True).moved(-0.14, 0, 0)
         scene.add("Bread knife", Model((p.STEEL, blade), (p.BLACK, grip)), at=(0.05, 0.02 + SINK, 0.077), turn=[("y", 5)])
-        tomato = vessels.fruit(0.03, 12, 6, 0.82, 0.15)
+        tomato = vessels.fruit(0.03, 10, 6, 0.82, 0.15)
         for k, (x, z) in enumerate(((0.105, -0.055), (0.12, 0.012))):
             scene.add(f"Tomato {k + 1}", Model((p.TOMATO, tomato), (p.GREEN, vessels.stalk(0.008, 0.044))), at=(x, 0.0195, z))
 
 
 def roll(scene):
-    """Kitchen paper on its stand."""
+    """On its stand."""
     with scene.group("Kitchen paper", at=(0.16, 0, 0.72)):
-        foot = lathe([(0.07, 0.0), (0.07, 0.01), (0.066, 0.014), (0.0, 0.014)], 18)
+        foot = lathe([(0.07, 0.0), (0.07, 0.01), (0.066, 0.014), (0.0, 0.014)], 14)
         pole = lathe([(0.007, 0.014), (0.007, 0.29), (0.012, 0.295), (0.012, 0.31), (0.006, 0.316), (0.0, 0.316)], 8)
-        scene.add("Paper stand", Model((p.WOOD, foot), (p.WOOD, pole)))
-        paper = lathe([(0.058, 0.0), (0.058, 0.24), (0.021, 0.24), (0.021, 0.2)], 18)
-        scene.add("Paper roll", Model((p.PAPER, paper)), at=(0, 0.014, 0))
+        paper = lathe([(0.058, 0.0), (0.058, 0.24), (0.021, 0.24), (0.021, 0.0)], 14)
+        scene.add("Kitchen paper", Model((p.WOOD, foot), (p.WOOD, pole), (p.PAPER, paper.moved(0, 0.0135, 0))))
 
 
 def plants(scene):
-    pots = ((0.98, p.TERRACOTTA, p.HERB, 24, 0.055, 0.034, 0.11), (1.22, p.PORCELAIN, p.LEAF, 16, 0.12, 0.05, 0.12),
-            (1.66, p.YELLOW, p.HERB, 22, 0.06, 0.03, 0.13))
+    pots = ((0.98, p.TERRACOTTA, p.HERB, 21, 0.075, 0.05, 0.11), (1.22, p.PORCELAIN, p.LEAF, 16, 0.15, 0.06, 0.14),
+            (1.66, p.YELLOW, p.HERB, 20, 0.085, 0.045, 0.14))
     for number, (z, clay, green, count, length, width, height) in enumerate(pots):
         with scene.group(f"Plant {number + 1}", at=(-0.02, 0, z)):
-            pot = lathe([(0.036, 0.0), (0.05, 0.075), (0.055, 0.076), (0.056, 0.096), (0.05, 0.096), (0.048, 0.084)], 16)
-            soil = lathe([(0.048, 0.084), (0.0, 0.086)], 16)
+            pot = lathe([(0.036, 0.0), (0.05, 0.075), (0.055, 0.076), (0.056, 0.096), (0.05, 0.096), (0.048, 0.084)], 13)
+            soil = lathe([(0.048, 0.084), (0.0, 0.086)], 13)
             scene.add(f"Flower pot {number + 1}", Model((clay, pot), (p.EARTH, soil)))
             scene.add(f"Leaves {number + 1}", Model((green, foliage(number, count, length, width, height))))
 

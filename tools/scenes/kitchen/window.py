@@ -24,12 +24,12 @@ def build(scene):
         w, h = (WIDTH - 2 * FRAME) / 2, HEIGHT - 2 * FRAME
         bar = 0.05
         casement = [(0.0, -0.02), (0.0, 0.016), (-0.004, 0.02), (-bar + 0.008, 0.02), (-bar, 0.008), (-bar, -0.02)]
-        sash = Model((p.WOODWORK, upright(sweep(rectangle(w - 0.004, h - 0.004), casement))))
-        pane = Model((p.GLASS, polygon([(-w / 2 + bar, -h / 2 + bar, 0), (w / 2 - bar, -h / 2 + bar, 0),
-                                        (w / 2 - bar, h / 2 - bar, 0), (-w / 2 + bar, h / 2 - bar, 0)])))
+        sash = upright(sweep(rectangle(w - 0.004, h - 0.004), casement))
+        x, y = w / 2 - 0.002 - bar, h / 2 - 0.002 - bar
+        pane = quad((-x, -y, -0.005), (2 * x, 0, 0), (0, 2 * y, 0))
+        leaf = Model((p.WOODWORK, sash), (p.GLASS, pane))
         for side, x in (("left", -w / 2), ("right", w / 2)):
-            scene.add(f"Casement {side}", sash, at=(x, centre, -0.13))
-            scene.add(f"Pane {side}", pane, at=(x, centre, -0.135))
+            scene.add(f"Casement {side}", leaf, at=(x, centre, -0.13))
         grip = lathe([(0.012, 0.0), (0.012, 0.006), (0.006, 0.008), (0.006, 0.03)], 8).turned(("x", 90))
         lever = tube([(0, 0.012, 0.03), (0, -0.02, 0.032), (0, -0.09, 0.036)], [0.009, 0.008, 0.006], 6, up=(0, 0, 1))
         scene.add("Window handle", Model((p.CHROME, grip), (p.CHROME, lever)), at=(0.025, centre - 0.05, -0.1105))
@@ -53,10 +53,8 @@ def curtains(scene):
     rod_y, reach = NICHE_Y1 + 0.09, 0.06
     half = WIDTH / 2 + 0.16
     rod = tube([(-half, rod_y, reach), (half, rod_y, reach)], 0.009, 8, caps=(False, False))
-    scene.add("Curtain rod", Model((p.CHROME, rod)))
-    ball = Model((p.CHROME, lathe([(0.0, -0.018), (0.013, -0.013), (0.018, 0.0), (0.013, 0.013), (0.0, 0.018)], 10)))
-    for side, x in (("left", -half), ("right", half)):
-        scene.add(f"Finial {side}", ball, at=(x, rod_y, reach))
+    ball = lathe([(0.0, -0.018), (0.013, -0.013), (0.018, 0.0), (0.013, 0.013), (0.0, 0.018)], 8)
+    scene.add("Curtain rod", Model().add(p.CHROME, rod, ball.moved(-half, rod_y, reach), ball.moved(half, rod_y, reach)))
 
     def cloth(s, t):
         """Folds that widen a little towards the hem."""

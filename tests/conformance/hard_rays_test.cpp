@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+// The device's traversal on rays and meshes that break careless ones: through edges and vertices, along the axes with
+// both zeros, in the planes of boxes and triangles, slivers, heaps of equal triangles, far from the origin. The brute
+// force in long double decides, Embree is the second opinion. The default and the portable build have to agree bit
+// for bit.
+#include "bvh/bvh.h"
+#include "support/capture.h"
+#include "support/device.h"
+#include "support/hit_comparison.h"
+#include "support/meshes.h"
+#include "support/rays.h"
+#include "support/scene_builder.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace obscura {
+namespace {
+
+using test::BruteForce;
+using test::HitComparison;
+using test::Tally;
+
+constexpr float FAR = std::numeric_limits<float>::infinity();
+constexpr float WORLD_OFFSETS[] = {0, 1000};  // m
+
+Scene moved(Scene scene, float offset) {
+    scene.bounds = {};
+    for (Vertex& vertex : scene.vertices)
+        vertex.position += V3f(offset, -offset, offset);
+    for (const Triangle& triangle : scene.triangles)
+        for (const uint32_t corner : triangle.vertex)
+            scene.bounds.extendBy(scene.vertices[corner].position);
+    return scene;
+}
+
+bool same_bits(const TraceHit& a, const TraceHit& b) {
+    return std::memcmp(&a, &b, sizeof(TraceHit)) == 0;
+}
+
+class HardRays : public test::DeviceTest {
+  protected:
+    // Hits of both builds, which must be the same, and what any-hit says about the same rays.
+    std::vector<TraceHit> trace(const Scene& scene, const std::vector<TraceRay>& rays) {
+        const Bvh bvh = build_bvh(scene);
+        std::vector<TraceHit> hits;
+        for (const char* options : {"", "-D OBSCURA_PORTABLE"}) {
+            test::DeviceTracer tracer(device(), bvh, options);
+            const std::vector<TraceHit> found = tracer.closest(rays);
+            const std::vector<uint8_t> blocked = tracer.occluded(rays);
+            if (hits.empty()) hits = found;
+            for (size_t i = 0; i < rays.size(); ++i) {
+                EXPECT_TRUE(same_bits(found[i], hits[i])) << "ray " << i << " differs in the portable build";
+                EXPECT_EQ(blocked[i] != 0, hits[i].primitive != NO_PRIMITIVE)
+                    << "ray " << i << " with any-hit";
+                if (HasFailure()) return hits;
+            }
+        }
+        return hits;
+    }
+
+    // Every ray judged by the brute force, whether or not Embree agrees.
+    Tally judge_all(const Scene& scene, const std::vector<TraceRay>& rays) {
+        const HitComparison comparison(scene);
+        return comparison.compare(rays, trace(scene, rays), comparison.embree(rays), 1);
+    }
+
+    void expect_none_wrong(const Scene& scene, const std::vector<TraceRay>& rays) {
+        const Tally tally = judge_all(scene, rays);
+        EXPECT_EQ(tally.rays, rays.size());
+        EXPECT_EQ(tally.device_wrong, 0U) << Tally::header() << tally.row(scene.name);
+    }
+};
+
+TEST_F(HardRays, RandomRaysFindWhatTheOracleFinds) {
+    for (const float offset : WORLD_OFFSETS) {
+        for (const Scene& mesh :
+             {test::icosphere(4), test::triangle_soup(5000, 0.1f, 1, 1), test::flat_grid(50)}) {
+            const Scene scene = moved(mesh, offset);
+            const Tally tally = judge_all(scene, test::random_rays(scene, 10000, 1));
+            EXPECT_EQ(tally.device_wrong, 0U) << Tally::header() << tally.row("random");
+            EXPECT_LE(tally.tie + tally.edge, 1U);
+            EXPECT_GT(tally.hits, 300U);
+        }
+    }
+}
+
+TEST_F(HardRays, EdgesAndVerticesHaveOnlyExplainedDifferences) {
+    for (const float offset : WORLD_OFFSETS) {
+        for (const Scene& mesh : {test::icosphere(4), test::triangle_soup(5000, 0.1f, 1, 2)}) {
+            const Scene scene = moved(mesh, offset);
+            expect_none_wrong(scene, test::edge_rays(scene, 5000, 2));
+            expect_none_wrong(scene, test::vertex_rays(scene, 5000, 3));
+        }
+    }
+}
+
+// From inside to outside, aimed at edges and vertices: nothing gets out.
+TEST_F(HardRays, ClosedSphereHasNoLeaks) {
+    constexpr size_t COUNT = 200000;
+    for (const float offset : {0.0f, 1e3f, 1e5f}) {
+        const Scene scene = moved(test::icosphere(5), offset);
+        const V3f center = scene.bounds.center();
+        for (std::vector<TraceRay> rays :
+             {test::edge_rays(scene, COUNT, 5), test::vertex_rays(scene, COUNT, 6)}) {
+            for (TraceRay& ray : rays) {
+                const V3f target = ray.origin + ray.direction;
+                ray.origin = center + 0.1f * (ray.origin - center);
+                ray.direction = target - ray.origin;
+            }
+            size_t leaks = 0;
+            for (const TraceHit& hit : trace(scene, rays))
+                leaks += hit.primitive == NO_PRIMITIVE ? 1 : 0;
+            EXPECT_EQ(leaks, 0U) << "of " << rays.size() << " rays, " << offset << " m from the origin";
+        }
+    }
+}
+
+// Along the axes, with +0 and -0, from points in the planes of boxes, triangles and vertices: 0 / 0 in the slabs.
+TEST_F(HardRays, AxisRaysMissNothingThatTheOracleHits) {
+    test::SceneBuilder boxes;
+    const uint32_t matte = boxes.material(test::matte(Rgb(0.5f)));
+    for (int i = 0; i < 27; ++i) {
+        const V3f low(static_cast<float>(i % 3), static_cast<float>(i / 3 % 3), static_cast<float>(i / 9));
+        boxes.box(low, low + V3f(0.5f), matte);
+    }
+    const Scene box_grid = boxes.finish();
+    for (const float offset : WORLD_OFFSETS) {
+        for (const Scene& mesh : {box_grid, test::flat_grid(16), test::triangle_soup(2000, 0.2f, 1, 3)}) {
+            const Scene scene = moved(mesh, offset);
+            const std::vector<TraceRay> rays = test::axis_rays(scene, 20000, 4);
+            const std::vector<TraceHit> hits = trace(scene, rays);
+            const std::vector<test::BruteHit> truth = BruteForce(scene).closest(rays);
+            size_t oracle_hits = 0;
+            for (size_t i = 0; i < rays.size(); ++i) {
+                if (!truth[i].hit()) continue;
+                ++oracle_hits;
+                ASSERT_NE(hits[i].primitive, NO_PRIMITIVE)
+                    << test::Disagreement{rays[i], hits[i], hits[i], test::Outcome::device_wrong}.text();
+            }
+            EXPECT_GT(oracle_hits, 100U);
+            expect_none_wrong(scene, rays);
+        }
+    }
+}
+
+TEST_F(HardRays, EmptySceneIsMissedEverywhere) {
+    const Scene empty = test::MeshBuilder().finish();
+    for (const TraceHit& hit : trace(empty, test::random_rays(empty, 1000, 1)))
+        ASSERT_EQ(hit.primitive, NO_PRIMITIVE);
+}
+
+TEST_F(HardRays, SingleTriangleIsHitAsTheOracleSays) {
+    test::MeshBuilder mesh;
+    mesh.triangle(V3f(0, 0, 0), V3f(1, 0, 0.25f), V3f(0, 1, 0.5f));
+    const Scene scene = mesh.finish();
+    const Tally tally = judge_all(scene, test::random_rays(scene, 20000, 7));
+    EXPECT_EQ(tally.device_wrong, 0U);
+    EXPECT_EQ(tally.tie, 0U);
+    EXPECT_GT(tally.hits, 100U);
+}
+
+TEST_F(HardRays, FirstOfManyIdenticalTrianglesIsHit) {
+    const Scene one = test::identical_triangles(1);
+    const std::vector<TraceRay> rays = test::random_rays(one, 500, 8);
+    const std::vector<TraceHit> expected = trace(one, rays);
+    const std::vector<TraceHit> found = trace(test::identical_triangles(100000), rays);
+    size_t hits = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_TRUE(same_bits(found[i], expected[i])) << "ray " << i << ": primitive " << found[i].primitive;
+        hits += found[i].primitive != NO_PRIMITIVE ? 1 : 0;
+    }
+    EXPECT_GT(hits, 10U);
+}
+
+TEST_F(HardRays, SliversAreHitWithinTheirRounding) {
+    for (const float thinness : {1e-2f, 1e-4f, 1e-6f}) {
+        for (const float offset : WORLD_OFFSETS) {
+            const Scene scene = moved(test::triangle_soup(5000, 1, thinness, 9), offset);
+            expect_none_wrong(scene, test::random_rays(scene, 5000, 10));
+            expect_none_wrong(scene, test::edge_rays(scene, 2000, 11));
+        }
+    }
+}
+
+// Triangles of all sizes down to 2^-40 around one corner, seen from everywhere.
+TEST_F(HardRays, NestedScalesAreHitWithinTheirRounding) {
+    const Scene scene = test::nested_scales(40);
+    expect_none_wrong(scene, test::random_rays(scene, 10000, 12));
+    expect_none_wrong(scene, test::edge_rays(scene, 5000, 13));
+}
+
+// t counts over (0, t_max), both ends open.
+TEST_F(HardRays, EndsOfTheRayAreOpen) {
+    test::MeshBuilder mesh;
+    mesh.triangle(V3f(0, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0));
+    const V3f above(0.25f, 0.25f, 2);
+    const V3f on(0.25f, 0.25f, 0);
+    const V3f down(0, 0, -1);
+    const float just_above = std::nextafter(2.0f, 3.0f);
+    const std::vector<TraceRay> rays{{above, down, FAR}, {above, 4.0f * down, FAR}, {above, down, just_above},
+                                     {above, down, 2},   {on, down, FAR},           {above, -down, FAR}};
+    const std::vector<TraceHit> hits = trace(mesh.finish(), rays);
+    const std::vector<uint32_t> expected{0, 0, 0, NO_PRIMITIVE, NO_PRIMITIVE, NO_PRIMITIVE};
+    for (size_t i = 0; i < rays.size(); ++i)
+        EXPECT_EQ(hits[i].primitive, expected[i]) << "ray " << i;
+    EXPECT_EQ(hits[0].t, 2);
+    EXPECT_EQ(hits[1].t, 0.5f);
+    EXPECT_EQ(hits[0].u, 0.25f);
+    EXPECT_EQ(hits[0].v, 0.25f);
+}
+
+}  // namespace
+}  // namespace obscura
