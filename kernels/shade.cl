@@ -99,9 +99,12 @@ inline void sample_lights(global const Frame* frame, const Vertex* v, global con
                           global float4* shadow_rays, global uint* counters) {
     const uint count = frame->sampling.z;
     for (uint l = 0u; l < count; ++l) {
-        const float2 select =
-            unit_float2(sample_codes(frame, v->sampler, dimension_at(v->depth, DIMENSION_SELECT_LIGHT), l,
-                                     count, frame->lattice.zw, true));
+        float2 select = (float2)(0.0f);
+        if (NEED_PUNCTUAL_LIGHTS || frame->lights.x > MAX_WEIGHED_LIGHTS) {
+            select =
+                unit_float2(sample_codes(frame, v->sampler, dimension_at(v->depth, DIMENSION_SELECT_LIGHT), l,
+                                         count, frame->lattice.zw, true));
+        }
         uint sample = l;
         if (NEED_AREA_LIGHTS) {
             const float2 u =

@@ -6,7 +6,8 @@
 
 Shares nothing with the program but the definitions in host/scene/*.h: its own glTF reader, PNG decoder,
 albedo quadrature (over microfacet normals instead of directions), texture means (by samples instead of
-integrals) and silhouettes. Exits with 0 if all scenes agree, 1 if one does not, 2 if a scene can't be read. numpy only.
+integrals) and silhouettes. Exits with 0 if all scenes agree, 1 if one does not, 2 if a scene can't be read.
+Needs numpy only.
 """
 import json
 import math

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The reflection model of tools/check_radiometry.py: mean albedos by an integral over microfacet normals (the
-program integrates over directions), materials, and texture means by samples (the program has exact integrals)."""
+program integrates over directions), materials, texture means by samples (the program has exact integrals)."""
 import math
 
 import numpy as np
@@ -15,9 +15,10 @@ SAMPLES = 4e6  # of the texture on one mesh, at least
 def albedo_nodes(row):
     """A and B at the table's 32 cosines for sqrt(alpha) = row / 31: integrals over microfacet normals h.
 
-    a(mu) = int F(o.h) G2(o, i) (o.h) / (mu cos theta_h) D cos theta_h dh, tan^2 theta_h = alpha^2 u / (1 - u),
-    so that D cos theta_h dh = du dphi / (2 pi). Reflected directions stay above the surface while
-    cos phi > limit(theta_h); both integrals end, and the outer one is split, where that condition changes.
+    a(mu) = int F(o.h) G2(o, i) (o.h) / (mu cos theta_h) D cos theta_h dh with
+    tan^2 theta_h = alpha^2 u / (1 - u), so that D cos theta_h dh = du dphi / (2 pi). Reflected directions stay
+    above the surface while cos phi > limit(theta_h); both integrals end, and the outer one is split, where that
+    condition changes.
     """
     mu = np.arange(TABLE_SIZE) / (TABLE_SIZE - 1)
     if row == 0:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The reader of tools/check_radiometry.py: glTF files and PNG images as numpy arrays, sharing nothing with the
-program's own reader."""
+"""The reader of tools/check_radiometry.py: glTF files and PNG images as numpy arrays. It shares nothing with
+the program's own reader."""
 import base64
 import json
 import math
@@ -130,7 +130,8 @@ def decode_png(data):
 def unfilter(kind, row, previous, step):
     """Undoes PNG's row filters 0 to 4 in place."""
     if kind == 2:
-        row[:] = (np.frombuffer(bytes(row), np.uint8) + np.frombuffer(previous, np.uint8)).tobytes()  # modulo 256
+        above = np.frombuffer(bytes(previous), np.uint8)
+        row[:] = (np.frombuffer(bytes(row), np.uint8) + above).tobytes()  # modulo 256
         return
     for i in range(len(row) if kind else 0):
         left = row[i - step] if i >= step else 0

@@ -149,7 +149,10 @@ void add_work_options(CLI::App& command, RenderOptions& o) {
                             "Sample points; auto picks the best for spp x obscurance rays")
         ->default_str("auto")
         ->group(group);
-    command.add_option("--seed", s.seed, "Another seed, another noise")->capture_default_str()->group(group);
+    command.add_option("--seed", s.seed, "Another seed, another noise")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str()
+        ->group(group);
     command
         .add_option("--device", o.device, "Index, platform:device, or part of a name (see obscura devices)")
         ->envname("OBSCURA_DEVICE")

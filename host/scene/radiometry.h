@@ -27,8 +27,8 @@ struct Radiometry {
 Radiometry compute_radiometry(const Scene& scene);
 
 // The I_A that the settings ask for: bleeding picks (5) over (3); a constant ambient term has W = 1, so it
-// takes (3) in any case. --ambient-light replaces I_A: it is the radiance at an open point, so divided by R_ave
-// with bleeding; where R_ave is 0 nothing reflects and the value is 0. --ambient-scale multiplies.
+// takes (3) in any case. --ambient-light replaces I_A: it is the radiance at an open point, so divided by
+// R_ave with bleeding; where R_ave is 0 nothing reflects and the value is 0. --ambient-scale multiplies.
 RgbD resolve_ambient(const Radiometry& radiometry, const RenderSettings& settings);
 
 // Mean base colour of each triangle over its own UV footprint, times the factor; 1 entry per triangle.
@@ -42,7 +42,8 @@ bool has_light(const Scene& scene);
 RenderSettings with_default_sky(const Scene& scene, RenderSettings settings);
 
 // Projected area, m^2, of what parallel light of this direction reaches first: the area of the scene's
-// silhouette seen along it, by counting the covered pixels of a 1024 x 1024 raster over its bounding rectangle.
+// silhouette seen along it, by counting the covered pixels of a 1024 x 1024 raster over its bounding
+// rectangle.
 double lit_area(const Scene& scene, const V3f& direction);
 
 }  // namespace obscura

@@ -85,9 +85,9 @@ const Camera& select_camera(const Scene& scene, const RenderSettings& settings) 
     if (parsed.ec == std::errc{} && parsed.ptr == end && index < scene.cameras.size())
         return scene.cameras[index];
     std::string names;
-    for (const Camera& camera : scene.cameras)
-        names += (names.empty() ? "" : ", ") + camera.name;
-    throw InputError("{}: there is no camera '{}'; the scene has: {}", scene.name, settings.camera, names);
+    for (size_t i = 0; i < scene.cameras.size(); ++i)
+        names += fmt::format("{}{} '{}'", i == 0 ? "" : ", ", i, scene.cameras[i].name);
+    throw InputError("{}: there is no camera '{}'; the scene has {}", scene.name, settings.camera, names);
 }
 
 Frame make_frame(const FrameInput& input, const PixelRect& rect, uint32_t capacity) {
@@ -108,7 +108,7 @@ Frame make_frame(const FrameInput& input, const PixelRect& rect, uint32_t capaci
     frame.lattice = {pixel.x, pixel.y, light.x, light.y};
     frame.lattice_points = {points.x, points.y, 0, 0};
 
-    const double d_max = resolve_max_distance(settings.d_max, input.scene.bounds);
+    const double d_max = input.d_max;
     const bool unlimited = std::isinf(d_max);
     const Falloff& falloff = settings.falloff;
     const double norm = falloff.kind == FalloffKind::exp ? -std::expm1(-falloff.parameter) : 1;

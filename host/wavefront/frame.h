@@ -33,6 +33,7 @@ struct FrameInput {
     LayerPlanes planes;
     uint32_t area_light_count;
     uint32_t point_light_count;
+    double d_max;  // resolved, m
 };
 
 // rect: the pixels to render; capacity: path slots of a wave.

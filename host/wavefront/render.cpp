@@ -113,6 +113,7 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     result.needs = analyse_needs(job.scene, settings);
     const LayerPlanes planes = assign_planes(result.needs, wanted_layers(job.layers));
     const PixelRect rect = crop_pixels(settings.crop, settings.width, settings.height);
+    select_camera(job.scene, settings);  // an unknown one is an error before any work is done
 
     // The builder works on one core, the compiler on another.
     std::future<Bvh> building = std::async(std::launch::async, [&] { return build_bvh(job.scene); });
@@ -145,8 +146,10 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
                            result.needs,
                            planes,
                            static_cast<uint32_t>(arrays.area_lights.size()),
-                           static_cast<uint32_t>(arrays.point_lights.size())};
+                           static_cast<uint32_t>(arrays.point_lights.size()),
+                           result.d_max};
     uint64_t samples_before = 0;
+    result.complete = after_wave(0, {});
     for (const PixelRect& band : bands) {
         const uint64_t band_samples = uint64_t{band.pixel_count()} * settings.spp;
         const auto report = [&](uint64_t done, const RayCounts& rays) {

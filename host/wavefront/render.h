@@ -53,7 +53,7 @@ struct RenderResult {
     std::map<std::string, uint64_t> bytes;  // device memory at its peak: scene bvh queues film peak_device
 };
 
-// fraction of the samples done; false stops the render after the current wave.
+// fraction: of the samples done, 0 before the first wave; false stops the render there.
 using RenderCallback = std::function<bool(double fraction, const RayCounts& rays)>;
 
 RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJob& job,

@@ -21,8 +21,9 @@ namespace {
 using Oracle = DeviceTest;
 
 constexpr uint64_t SEEDS = 16;
-constexpr uint32_t RAYS = 65536;     // of each seed
-constexpr double ROUNDING = 2.5e-7;  // of W: two units in its last place
+constexpr uint32_t SPP = 64;
+constexpr uint32_t RAYS = SPP * 1024;  // of each seed
+constexpr double ROUNDING = 2.5e-7;    // of W: two units in its last place
 // So narrow that all camera rays meet the same point.
 constexpr double POINT_FOV = 1e-6;
 const Rgb COLOR(0.8f, 0.5f, 0.2f);  // of every surface near the point

@@ -23,6 +23,29 @@ double exact(float value) {
     return static_cast<double>(value);
 }
 
+// Volume inside a closed surface by the divergence theorem: negative if the front sides look inwards.
+double enclosed_volume(const Scene& scene) {
+    double volume = 0;
+    for (uint32_t i = 0; i < scene.triangles.size(); ++i)
+        volume +=
+            V3d(scene.corner(i, 0).position).dot(geometric_normal(scene, i)) * triangle_area(scene, i) / 3;
+    return volume;
+}
+
+TEST(SceneBuilder, FrontSidesLookAsStated) {
+    for (const bool inwards : {false, true}) {
+        const double sign = inwards ? -1 : 1;
+        SceneBuilder box;
+        box.box(V3f(1, 2, 3), V3f(2, 4, 6), box.material(matte(Rgb(0.5f))), inwards);
+        EXPECT_NEAR(enclosed_volume(box.finish()), sign * 6, 1e-6);
+        SceneBuilder sphere;
+        sphere.sphere(V3f(1, 0, 0), 2, 4, sphere.material(matte(Rgb(0.5f))), inwards, true);
+        const Scene ball = sphere.finish();
+        EXPECT_NEAR(enclosed_volume(ball), sign * 32 * PI / 3, 0.4);
+        EXPECT_GT(geometric_normal(ball, 7).dot(V3d(ball.corner(7, 1).normal)), 0.9);
+    }
+}
+
 TEST(Radiometry, FurnaceHasTheClosedForm) {
     for (const float r : {0.0f, 0.1f, 0.5f, 0.9f, 0.99f, 0.9999f}) {
         const Radiometry result =

@@ -7,7 +7,7 @@ import argparse
 import pathlib
 import sys
 
-from kitchen import (appliances, cabinets, chairs, hob, lamp, room, shelves, sink, table, things, wall, window)
+from kitchen import appliances, cabinets, chairs, hob, lamp, room, shelves, sink, table, things, wall, window
 from modelling.gltf import Scene
 
 OBJECTS, TRIANGLES = 203, 28937
@@ -37,8 +37,10 @@ def main():
         for name, count in scene.triangles_by_name():
             print(f"{count:6d}  {name}")
     if (objects, triangles) != (OBJECTS, TRIANGLES):
-        print(f"The kitchen has {objects} objects and {triangles} triangles; it must have {OBJECTS} and {TRIANGLES}.",
-              file=sys.stderr)
+        print(
+            f"The kitchen has {objects} objects and {triangles} triangles; it must have {OBJECTS} and {TRIANGLES}.",
+            file=sys.stderr,
+        )
         return 1
     size = scene.write(arguments.output)
     print(f"{arguments.output}: {objects} objects, {triangles} triangles, {size} bytes")

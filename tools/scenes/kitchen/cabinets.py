@@ -3,7 +3,7 @@
 
 from modelling.shapes import polygon, quad
 from modelling.surface import Model, Surface
-from modelling.sweep import bevelled, lathe, line, rectangle, slab, sweep
+from modelling.sweep import lathe, line, rectangle, sweep
 
 from . import palette as p
 from .kit import WORKTOP_DEPTH, WORKTOP_HEIGHT, bar_handle, facing, knob, panel_front, plain_front
@@ -81,14 +81,24 @@ def doors(scene, name, edges, from_top, handle):
         hinge_left = len(pairs) > 1 and i == 0
         x = (x1 - x0) / 2 - 0.03
         grip = handle.turned(("z", 90)).moved(x if hinge_left else -x, (y1 - y0) / 2 - 0.13, 0.02)
-        scene.add(f"Door {name} {i + 1}", Model((p.TEAL, front), (p.BRUSHED, grip)),
-                  at=((x0 + x1) / 2, (y0 + y1) / 2, FRONT))
+        scene.add(
+            f"Door {name} {i + 1}", Model((p.TEAL, front), (p.BRUSHED, grip)), at=((x0 + x1) / 2, (y0 + y1) / 2, FRONT)
+        )
 
 
 def worktop_profile(back):
     """(depth, height) from the underside behind the fronts, over the rounded edge, back along the top."""
     y0, y1, z, r = CARCASS_TOP, WORKTOP_HEIGHT, WORKTOP_DEPTH, 0.006
-    return [(FRONT, y0), (z - r, y0), (z - 0.3 * r, y0 + 0.3 * r), (z, y0 + r), (z, y1 - r), (z - 0.3 * r, y1 - 0.3 * r), (z - r, y1), (back, y1)]
+    return [
+        (FRONT, y0),
+        (z - r, y0),
+        (z - 0.3 * r, y0 + 0.3 * r),
+        (z, y0 + r),
+        (z, y1 - r),
+        (z - 0.3 * r, y1 - 0.3 * r),
+        (z - r, y1),
+        (back, y1),
+    ]
 
 
 def worktops(scene):
@@ -108,8 +118,12 @@ def worktops(scene):
     window_run.extend(polygon([(0.0, y, z) for z, y in end_of(inner)]))
     y = WORKTOP_HEIGHT
     outer = [(0.0, y, front_edge[-1][0]), (run, y, front_edge[-1][0]), (run, y, 0.0), (0.0, y, 0.0)]
-    hole = [(centre - hole_z / 2, y, middle + hole_x / 2), (centre + hole_z / 2, y, middle + hole_x / 2),
-            (centre + hole_z / 2, y, middle - hole_x / 2), (centre - hole_z / 2, y, middle - hole_x / 2)]
+    hole = [
+        (centre - hole_z / 2, y, middle + hole_x / 2),
+        (centre + hole_z / 2, y, middle + hole_x / 2),
+        (centre + hole_z / 2, y, middle - hole_x / 2),
+        (centre - hole_z / 2, y, middle - hole_x / 2),
+    ]
     for i in range(4):
         k = (i + 1) % 4
         points = [outer[i], outer[k], hole[k], hole[i]]
@@ -140,8 +154,12 @@ def splashback(scene):
     surface, grout = tiles(BACK_END - 0.02, 0.5)
     scene.add("Splashback", Model((p.SPLASHBACK, surface), (p.GROUT, grout)), at=(0.01, WORKTOP_HEIGHT, 0))
     surface, grout = tiles(RUN_END - 0.02, 0.1)
-    scene.add("Splashback window", Model((p.SPLASHBACK, surface), (p.GROUT, grout)), at=(0, WORKTOP_HEIGHT, RUN_END - 0.01),
-              turn=[("y", 90)])
+    scene.add(
+        "Splashback window",
+        Model((p.SPLASHBACK, surface), (p.GROUT, grout)),
+        at=(0, WORKTOP_HEIGHT, RUN_END - 0.01),
+        turn=[("y", 90)],
+    )
 
 
 def upper_box(width, height, depth):
@@ -156,23 +174,39 @@ def upper_box(width, height, depth):
 
 
 def uppers(scene):
-    height = UPPER_Y1 - UPPER_Y0
     small_knob = knob(0.014, 0.026, 7)
     with scene.group("Upper cabinets"):
-        basket = lathe([(0.11, -0.0003), (0.125, 0.03), (0.14, 0.12), (0.147, 0.125), (0.144, 0.135), (0.134, 0.12), (0.12, 0.03), (0.0, 0.03)], 16)
+        basket = lathe(
+            [
+                (0.11, -0.0003),
+                (0.125, 0.03),
+                (0.14, 0.12),
+                (0.147, 0.125),
+                (0.144, 0.135),
+                (0.134, 0.12),
+                (0.12, 0.03),
+                (0.0, 0.03),
+            ],
+            16,
+        )
         scene.add("Basket", Model((p.WICKER, basket)), at=(2.05, UPPER_Y1, 0.16))
         for name, x0, x1, y0, y1, depth, count in (
-                ("right", 1.82, 2.60, UPPER_Y0, UPPER_Y1, UPPER_DEPTH, 2),
-                ("fridge", 2.62, 3.32, 1.86, UPPER_Y1, 0.50, 2)):
-            scene.add(f"Upper cabinet {name}", Model((p.LACQUER_WHITE, upper_box(x1 - x0, y1 - y0, depth))),
-                      at=((x0 + x1) / 2, y0, 0))
+            ("right", 1.82, 2.60, UPPER_Y0, UPPER_Y1, UPPER_DEPTH, 2),
+            ("fridge", 2.62, 3.32, 1.86, UPPER_Y1, 0.50, 2),
+        ):
+            scene.add(
+                f"Upper cabinet {name}",
+                Model((p.LACQUER_WHITE, upper_box(x1 - x0, y1 - y0, depth))),
+                at=((x0 + x1) / 2, y0, 0),
+            )
             width = (x1 - x0) / count
             for i in range(count):
                 x = x0 + (i + 0.5) * width
                 front = panel_front(width - GAP, y1 - y0 - GAP)
                 side = 1 if i == 0 else -1
                 grip = small_knob.moved(side * (width / 2 - 0.03), 0.06 - (y1 - y0) / 2, 0.02)
-                scene.add(f"Upper door {name} {i + 1}", Model((p.LACQUER_WHITE, front), (p.CHROME, grip)),
-                          at=(x, (y0 + y1) / 2, depth + 0.001))
-
-
+                scene.add(
+                    f"Upper door {name} {i + 1}",
+                    Model((p.LACQUER_WHITE, front), (p.CHROME, grip)),
+                    at=(x, (y0 + y1) / 2, depth + 0.001),
+                )

@@ -33,8 +33,16 @@ def chair(paint):
     for k in range(5):
         t = (k - 2) / 2
         x0, x1 = 0.14 * t, 0.185 * t
-        z1 = 0.08 + math.sqrt(bow ** 2 - x1 ** 2)
-        frame.extend(tube([(x0, SEAT - 0.006, 0.175 - 0.02 * t * t), (x1, rail_y, z1)], 0.0085 if k in (0, 4) else 0.0065, 4, caps=(False, False), up=(1, 0, 0)))
+        z1 = 0.08 + math.sqrt(bow**2 - x1**2)
+        frame.extend(
+            tube(
+                [(x0, SEAT - 0.006, 0.175 - 0.02 * t * t), (x1, rail_y, z1)],
+                0.0085 if k in (0, 4) else 0.0065,
+                4,
+                caps=(False, False),
+                up=(1, 0, 0),
+            )
+        )
     return Model((paint, frame))
 
 

@@ -27,8 +27,11 @@ def build(scene):
 
 def hob(scene):
     with scene.group("Hob", at=(CENTRE_X, TOP, CENTRE_Z)):
-        tray = sweep(rectangle(0.58, 0.50, 0.028, 2), [(0.0, -SINK), (0.0, 0.004), (-0.004, 0.008), (-0.018, 0.008), (-0.024, 0.005)],
-                     cap_end=True)
+        tray = sweep(
+            rectangle(0.58, 0.50, 0.028, 2),
+            [(0.0, -SINK), (0.0, 0.004), (-0.004, 0.008), (-0.018, 0.008), (-0.024, 0.005)],
+            cap_end=True,
+        )
         scene.add("Hob", Model((p.BRUSHED, tray)))
         burner = lathe([(0.045, 0.0), (0.043, 0.008), (0.032, 0.010), (0.032, 0.016), (0.0, 0.020)], 12)
         model = Model((p.IRON, burner))
@@ -62,7 +65,11 @@ def oven(scene):
             controls.add(p.CHROME, knob(0.021, 0.028, 8).moved(x, 0, 0.025))
         scene.add("Oven controls", controls, at=(0, top - panel / 2, 0))
         height = top - panel - 0.004 - bottom
-        frame = facing(sweep(rectangle(width, height), [(0.0, 0.0), (0.0, 0.022), (-0.003, 0.025), (-0.055, 0.025), (-0.058, 0.0215)]))
+        frame = facing(
+            sweep(
+                rectangle(width, height), [(0.0, 0.0), (0.0, 0.022), (-0.003, 0.025), (-0.055, 0.025), (-0.058, 0.0215)]
+            )
+        )
         inside = quad((-width / 2 + 0.058, -height / 2 + 0.058, 0.0215), (width - 0.116, 0, 0), (0, height - 0.116, 0))
         handle = bar_handle(0.48, 0.045, 0.009, 8, 2).moved(0, height / 2 - 0.03, 0.025)
         door = Model((p.BRUSHED, frame), (p.BLACK_GLASS, inside), (p.CHROME, handle))
@@ -95,10 +102,12 @@ def hood(scene):
     """Pyramid with a chimney up to the ceiling; its back is the wall."""
     bottom, rim, neck = 1.56, 0.05, 1.86
     h, d, hn, dn = 0.30, 0.50, 0.12, 0.24
-    rings = [[(-h, bottom, 0), (-h, bottom, d), (h, bottom, d), (h, bottom, 0)],
-             [(-h, bottom + rim, 0), (-h, bottom + rim, d), (h, bottom + rim, d), (h, bottom + rim, 0)],
-             [(-hn, neck, 0), (-hn, neck, dn), (hn, neck, dn), (hn, neck, 0)],
-             [(-hn, ROOM_HEIGHT, 0), (-hn, ROOM_HEIGHT, dn), (hn, ROOM_HEIGHT, dn), (hn, ROOM_HEIGHT, 0)]]
+    rings = [
+        [(-h, bottom, 0), (-h, bottom, d), (h, bottom, d), (h, bottom, 0)],
+        [(-h, bottom + rim, 0), (-h, bottom + rim, d), (h, bottom + rim, d), (h, bottom + rim, 0)],
+        [(-hn, neck, 0), (-hn, neck, dn), (hn, neck, dn), (hn, neck, 0)],
+        [(-hn, ROOM_HEIGHT, 0), (-hn, ROOM_HEIGHT, dn), (hn, ROOM_HEIGHT, dn), (hn, ROOM_HEIGHT, 0)],
+    ]
     with scene.group("Hood and chimney", at=(CENTRE_X, 0, 0)):
         walls = [Surface(), Surface(), Surface()]
         for surface, low, high in zip(walls, rings, rings[1:]):
@@ -128,16 +137,32 @@ def underside(h, d, y):
 def pot(radius, height, segments, steel=p.STEEL, loops=True):
     """Closed body with its lid on; two loop handles."""
     r, h = radius, height
-    body = lathe([(0.0, 0.0), (r - 0.008, 0.0), (r - 0.002, 0.003), (r, 0.012), (r, h - 0.004), (r + 0.005, h), (r + 0.005, h + 0.003), (r - 0.004, h + 0.004)],
-                 segments)
+    body = lathe(
+        [
+            (0.0, 0.0),
+            (r - 0.008, 0.0),
+            (r - 0.002, 0.003),
+            (r, 0.012),
+            (r, h - 0.004),
+            (r + 0.005, h),
+            (r + 0.005, h + 0.003),
+            (r - 0.004, h + 0.004),
+        ],
+        segments,
+    )
     lid = lathe([(r - 0.004, h + 0.002), (r - 0.006, h + 0.008), (r * 0.8, h + 0.018), (0.018, h + 0.03)], segments)
     grip = lathe([(0.010, h + 0.028), (0.008, h + 0.04), (0.02, h + 0.048), (0.014, h + 0.058), (0.0, h + 0.06)], 10)
     model = Model((steel, body))
     top = Model((steel, lid), (p.BLACK, grip))
     if loops:
         for s in (1, -1):
-            path = [(s * (r - 0.002), h * 0.78, -0.035), (s * (r + 0.03), h * 0.8, -0.03), (s * (r + 0.036), h * 0.8, 0.0),
-                    (s * (r + 0.03), h * 0.8, 0.03), (s * (r - 0.002), h * 0.78, 0.035)]
+            path = [
+                (s * (r - 0.002), h * 0.78, -0.035),
+                (s * (r + 0.03), h * 0.8, -0.03),
+                (s * (r + 0.036), h * 0.8, 0.0),
+                (s * (r + 0.03), h * 0.8, 0.03),
+                (s * (r - 0.002), h * 0.78, 0.035),
+            ]
             model.add(p.BLACK, tube(path, 0.006, 6, caps=(False, False), up=(0, 1, 0)))
     return model, top
 
@@ -156,18 +181,53 @@ def cookware(scene):
 
 def frying_pan(scene, at):
     r, h = 0.11, 0.045
-    pan = lathe([(0.0, 0.0), (r - 0.025, 0.0), (r - 0.012, 0.008), (r, h), (r - 0.003, h + 0.002), (r - 0.016, 0.011), (r - 0.03, 0.006), (0.0, 0.006)], 18)
-    grip = tube([(r - 0.008, h - 0.012, 0), (r + 0.05, h + 0.006, 0), (r + 0.12, h + 0.016, 0), (r + 0.19, h + 0.018, 0)],
-                [0.008, 0.009, 0.011, 0.009], 8, flatten=0.7, up=(0, 1, 0), caps=(False, True))
+    pan = lathe(
+        [
+            (0.0, 0.0),
+            (r - 0.025, 0.0),
+            (r - 0.012, 0.008),
+            (r, h),
+            (r - 0.003, h + 0.002),
+            (r - 0.016, 0.011),
+            (r - 0.03, 0.006),
+            (0.0, 0.006),
+        ],
+        18,
+    )
+    grip = tube(
+        [(r - 0.008, h - 0.012, 0), (r + 0.05, h + 0.006, 0), (r + 0.12, h + 0.016, 0), (r + 0.19, h + 0.018, 0)],
+        [0.008, 0.009, 0.011, 0.009],
+        8,
+        flatten=0.7,
+        up=(0, 1, 0),
+        caps=(False, True),
+    )
     scene.add("Frying pan", Model((p.IRON, pan), (p.WOOD, grip)), at=at, turn=[("y", -28)])
 
 
 def kettle(scene, at):
-    body = lathe([(0.0, 0.0), (0.088, 0.0), (0.095, 0.006), (0.097, 0.02), (0.092, 0.055), (0.078, 0.09), (0.058, 0.112), (0.038, 0.122)], 18)
+    body = lathe(
+        [
+            (0.0, 0.0),
+            (0.088, 0.0),
+            (0.095, 0.006),
+            (0.097, 0.02),
+            (0.092, 0.055),
+            (0.078, 0.09),
+            (0.058, 0.112),
+            (0.038, 0.122),
+        ],
+        18,
+    )
     lid = lathe([(0.039, 0.1215), (0.034, 0.127), (0.006, 0.134)], 12)
     grip = lathe([(0.005, 0.133), (0.006, 0.14), (0.012, 0.146), (0.011, 0.154), (0.0, 0.158)], 8)
-    spout = tube([(0.07, 0.055, 0), (0.10, 0.075, 0), (0.12, 0.105, 0), (0.138, 0.122, 0)], [0.021, 0.017, 0.013, 0.011], 8,
-                 caps=(False, False), up=(0, 0, 1))
+    spout = tube(
+        [(0.07, 0.055, 0), (0.10, 0.075, 0), (0.12, 0.105, 0), (0.138, 0.122, 0)],
+        [0.021, 0.017, 0.013, 0.011],
+        8,
+        caps=(False, False),
+        up=(0, 0, 1),
+    )
     inside = tube([(0.138, 0.122, 0), (0.12, 0.105, 0)], [0.011, 0.011], 8, caps=(False, False), up=(0, 0, 1)).flipped()
     bow = [(-0.062, 0.10, 0)] + arc_points((0.0, 0.135, 0), 0.075, 170, 126, 3)
     handle = tube(bow, 0.0055, 6, caps=(False, False), up=(0, 0, 1))
@@ -175,5 +235,3 @@ def kettle(scene, at):
     hold = tube(arc_points((0.0, 0.135, 0), 0.075, 130, 50, 4), 0.010, 6, up=(0, 0, 1))
     model = Model((p.BLACK, inside)).add(p.CHROME, body, spout, lid, handle).add(p.RED, grip, hold)
     scene.add("Kettle", model, at=at, turn=[("y", -35)])
-
-

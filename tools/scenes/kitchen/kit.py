@@ -21,12 +21,20 @@ def facing(surface):
 def panel_front(width, height, thickness=0.02, frame=0.055):
     """A door with a recessed panel, centred, its back open at z = 0."""
     b = 0.002
-    profile = [(0.0, 0.0), (0.0, thickness - b), (-b, thickness), (-frame, thickness), (-frame - 0.008, thickness - 0.009)]
+    profile = [
+        (0.0, 0.0),
+        (0.0, thickness - b),
+        (-b, thickness),
+        (-frame, thickness),
+        (-frame - 0.008, thickness - 0.009),
+    ]
     return facing(sweep(rectangle(width, height), profile, cap_end=True))
 
 
 def plain_front(width, height, thickness=0.02, bevel=0.002):
-    return facing(sweep(rectangle(width, height), [(0.0, 0.0), (0.0, thickness - bevel), (-bevel, thickness)], cap_end=True))
+    return facing(
+        sweep(rectangle(width, height), [(0.0, 0.0), (0.0, thickness - bevel), (-bevel, thickness)], cap_end=True)
+    )
 
 
 def bar_handle(length, reach=0.03, radius=0.005, sides=6, steps=1):
@@ -38,8 +46,14 @@ def bar_handle(length, reach=0.03, radius=0.005, sides=6, steps=1):
 
 def knob(radius, depth, segments=8):
     """Faces +z."""
-    profile = [(radius * 0.45, -SINK), (radius * 0.45, depth * 0.4), (radius, depth * 0.55), (radius * 0.96, depth * 0.85),
-               (radius * 0.6, depth), (0.0, depth)]
+    profile = [
+        (radius * 0.45, -SINK),
+        (radius * 0.45, depth * 0.4),
+        (radius, depth * 0.55),
+        (radius * 0.96, depth * 0.85),
+        (radius * 0.6, depth),
+        (0.0, depth),
+    ]
     return facing(lathe(profile, segments))
 
 
@@ -63,8 +77,13 @@ def arc_points(centre, radius, start, end, steps, plane="xy"):
 
 def round_profile(radius, height, steps, bottom=0.0):
     """Quarter ellipse from (radius, bottom) to the axis at bottom + height."""
-    return [(radius * math.cos(math.pi / 2 * i / steps) if i < steps else 0.0,
-             bottom + height * math.sin(math.pi / 2 * i / steps)) for i in range(steps + 1)]
+    return [
+        (
+            radius * math.cos(math.pi / 2 * i / steps) if i < steps else 0.0,
+            bottom + height * math.sin(math.pi / 2 * i / steps),
+        )
+        for i in range(steps + 1)
+    ]
 
 
 __all__ = ["Model"]

@@ -28,10 +28,14 @@ def build(scene):
         scene.add("Window wall", Model((p.WALL_GREEN, window_wall()), (p.WOODWORK, niche())))
         scene.add("Cornice", Model((p.CEILING, cornice())))
         skirting = [(0.016, 0.0), (0.016, 0.07), (0.007, 0.09), (0.0, 0.092)]
-        scene.add("Skirting by the fridge", Model((p.WOODWORK, sweep(polyline(
-            [(W, DOOR_Z0 - 0.06), (W, 0), (FRIDGE_END, 0)]), skirting))))
-        scene.add("Skirting", Model((p.WOODWORK, sweep(polyline(
-            [(0, RUN_END), (0, D), (W, D), (W, DOOR_Z1 + 0.06)]), skirting))))
+        scene.add(
+            "Skirting by the fridge",
+            Model((p.WOODWORK, sweep(polyline([(W, DOOR_Z0 - 0.06), (W, 0), (FRIDGE_END, 0)]), skirting))),
+        )
+        scene.add(
+            "Skirting",
+            Model((p.WOODWORK, sweep(polyline([(0, RUN_END), (0, D), (W, D), (W, DOOR_Z1 + 0.06)]), skirting))),
+        )
         door(scene)
 
 

@@ -29,7 +29,11 @@ def build(scene):
 def lower_shelf(scene):
     fillings = ((p.PASTA, 0.75), (p.COFFEE, 0.6), (p.RICE, 0.8), (p.BEANS, 0.5))
     for i, (filling, fill) in enumerate(fillings):
-        scene.add(f"Jar {i + 1}", vessels.jar(filling, fill, height=0.16 - 0.012 * i), at=(0.10 + 0.115 * i, LOWER - SINK, 0.11))
+        scene.add(
+            f"Jar {i + 1}",
+            vessels.jar(filling, fill, height=0.16 - 0.012 * i),
+            at=(0.10 + 0.115 * i, LOWER - SINK, 0.11),
+        )
     tins = (p.RED, p.YELLOW_MATTE, p.GREEN, p.ORANGE, p.BLUE)
     for i, paint in enumerate(tins):
         scene.add(f"Spice tin {i + 1}", vessels.tin(paint), at=(0.57 + 0.062 * i, LOWER - SINK, 0.13 - 0.02 * (i % 2)))
@@ -37,8 +41,14 @@ def lower_shelf(scene):
 
 
 def upper_shelf(scene):
-    books = ((p.RED, 0.032, 0.235), (p.CREAM, 0.024, 0.21), (p.BLUE, 0.038, 0.25), (p.YELLOW_MATTE, 0.022, 0.22), (p.GREEN, 0.030, 0.24),
-             (p.PINK, 0.020, 0.20))
+    books = (
+        (p.RED, 0.032, 0.235),
+        (p.CREAM, 0.024, 0.21),
+        (p.BLUE, 0.038, 0.25),
+        (p.YELLOW_MATTE, 0.022, 0.22),
+        (p.GREEN, 0.030, 0.24),
+        (p.PINK, 0.020, 0.20),
+    )
     x = 0.09
     for i, (cover, thick, height) in enumerate(books):
         scene.add(f"Book {i + 1}", book(cover, thick, height), at=(x + thick / 2, UPPER - SINK, 0.10))
@@ -47,8 +57,27 @@ def upper_shelf(scene):
     teapot(scene)
     tea = vessels.tin(p.TERRACOTTA, 0.05, 0.12, 13, p.BRASS)
     scene.add("Tea caddy", tea, at=(0.66, UPPER - SINK, 0.11))
-    jug = lathe([(0.055, 0.0), (0.062, 0.01), (0.066, 0.06), (0.05, 0.13), (0.042, 0.16), (0.05, 0.19), (0.047, 0.19), (0.039, 0.16), (0.0, 0.13)], 12)
-    ear = tube([(0.042, 0.175, 0), (0.08, 0.175, 0), (0.092, 0.13, 0), (0.066, 0.07, 0)], 0.006, 5, caps=(False, False), up=(0, 0, 1))
+    jug = lathe(
+        [
+            (0.055, 0.0),
+            (0.062, 0.01),
+            (0.066, 0.06),
+            (0.05, 0.13),
+            (0.042, 0.16),
+            (0.05, 0.19),
+            (0.047, 0.19),
+            (0.039, 0.16),
+            (0.0, 0.13),
+        ],
+        12,
+    )
+    ear = tube(
+        [(0.042, 0.175, 0), (0.08, 0.175, 0), (0.092, 0.13, 0), (0.066, 0.07, 0)],
+        0.006,
+        5,
+        caps=(False, False),
+        up=(0, 0, 1),
+    )
     scene.add("Copper jug", Model().add(p.COPPER, jug, ear), at=(0.81, UPPER - SINK, 0.11), turn=[("y", -30)])
     scene.add("Salad bowl", Model((p.GREEN_GLAZE, vessels.bowl(0.095, 0.085, 15))), at=(0.98, UPPER - SINK, 0.11))
 
@@ -76,10 +105,20 @@ def book(cover, thick, height):
 def teapot(scene):
     body = lathe([(0.042, 0.0), (0.07, 0.03), (0.078, 0.06), (0.07, 0.09), (0.036, 0.116)], 14)
     lid = lathe([(0.038, 0.115), (0.034, 0.121), (0.007, 0.133), (0.012, 0.145), (0.009, 0.152), (0.0, 0.154)], 9)
-    spout = tube([(0.06, 0.04, 0), (0.09, 0.055, 0), (0.105, 0.085, 0), (0.125, 0.112, 0)], [0.02, 0.014, 0.010, 0.008], 7,
-                 caps=(False, False), up=(0, 0, 1))
-    handle = tube([(-0.06, 0.095, 0), (-0.10, 0.10, 0), (-0.12, 0.075, 0), (-0.105, 0.045, 0), (-0.07, 0.032, 0)], 0.007, 5,
-                  caps=(False, False), up=(0, 0, 1))
+    spout = tube(
+        [(0.06, 0.04, 0), (0.09, 0.055, 0), (0.105, 0.085, 0), (0.125, 0.112, 0)],
+        [0.02, 0.014, 0.010, 0.008],
+        7,
+        caps=(False, False),
+        up=(0, 0, 1),
+    )
+    handle = tube(
+        [(-0.06, 0.095, 0), (-0.10, 0.10, 0), (-0.12, 0.075, 0), (-0.105, 0.045, 0), (-0.07, 0.032, 0)],
+        0.007,
+        5,
+        caps=(False, False),
+        up=(0, 0, 1),
+    )
     with scene.group("Teapot", at=(0.47, UPPER - SINK, 0.11), turn=[("y", -25)]):
         model = Model()
         scene.add("Teapot", model.add(p.BLUE_GLAZE, body, spout, handle, lid))
@@ -87,8 +126,13 @@ def teapot(scene):
 
 def mugs(scene):
     """Under the lower shelf, each on a hook."""
-    hook = tube(bend([(0, 0.001, 0), (0, -0.034, 0), (0, -0.034, 0.018), (0, -0.022, 0.02)], 0.006, 1), 0.002, 4, caps=(False, True),
-                up=(1, 0, 0))
+    hook = tube(
+        bend([(0, 0.001, 0), (0, -0.034, 0), (0, -0.034, 0.018), (0, -0.022, 0.02)], 0.006, 1),
+        0.002,
+        4,
+        caps=(False, True),
+        up=(1, 0, 0),
+    )
     glazes = (p.YELLOW, p.RED_ENAMEL, p.GREEN_GLAZE, p.BLUE_GLAZE)
     for i, glaze in enumerate(glazes):
         model = Model((p.BRASS, hook))
@@ -96,5 +140,3 @@ def mugs(scene):
         for material, part in vessels.mug(glaze).parts.items():
             model.add(material, part.turned(("z", 75), ("y", 12 - 8 * i)).moved(-0.045, -0.092, 0.008))
         scene.add(f"Mug {i + 1}", model, at=(0.30 + 0.14 * i, LOWER - THICKNESS, 0.12))
-
-

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Clock, poster, mirror, towel rail, socket, switch."""
 
-
 from modelling.shapes import polygon
 from modelling.surface import Model, Surface
 from modelling.sweep import circle, lathe, rectangle, sweep
@@ -34,7 +33,9 @@ def clock(scene):
             mark = polygon([(-w, a, 0.0145), (w, a, 0.0145), (w, b, 0.0145), (-w, b, 0.0145)])
             marks.extend(mark.turned(("z", -30 * hour)))
         for angle, length, width, z in ((-305, 0.055, 0.006, 0.017), (-54, 0.088, 0.004, 0.020)):
-            hand = polygon([(-width, -0.015, z), (width, -0.015, z), (width * 0.6, length, z), (-width * 0.6, length, z)])
+            hand = polygon(
+                [(-width, -0.015, z), (width, -0.015, z), (width * 0.6, length, z), (-width * 0.6, length, z)]
+            )
             marks.extend(hand.turned(("z", angle)))
         scene.add("Clock", Model((p.YELLOW, rim), (p.PAPER, face), (p.BLACK, marks)))
 
@@ -47,7 +48,9 @@ def picture_frame(width, height, bar=0.022, depth=0.02):
 def poster(scene):
     width, height = 0.50, 0.64
     w, h = width / 2 - 0.022, height / 2 - 0.022
-    picture = polygon([(-w, -h, 0.009), (w, -h, 0.009), (w, h, 0.009), (-w, h, 0.009)], [(0, 1), (1, 1), (1, 0), (0, 0)])
+    picture = polygon(
+        [(-w, -h, 0.009), (w, -h, 0.009), (w, h, 0.009), (-w, h, 0.009)], [(0, 1), (1, 1), (1, 0), (0, 0)]
+    )
     with scene.group("Poster", at=(-1.35, 1.62, 0)):
         scene.add("Poster", Model((p.POSTER, picture), (p.DARK_WOOD, picture_frame(width, height))))
 
@@ -63,5 +66,3 @@ def socket(scene, name, at):
     plate = plain_front(0.08, 0.08, 0.008, 0.003)
     dish = facing(lathe([(0.022, 0.0079 + SINK), (0.02, 0.011), (0.018, 0.009), (0.0, 0.009)], 10))
     scene.add(name, Model((p.LACQUER_WHITE, plate), (p.LACQUER_WHITE, dish)), at=at)
-
-

@@ -20,7 +20,9 @@ def build(scene):
         centre = (SILL_TOP + NICHE_Y1) / 2
         upright = lambda surface: surface.turned(("x", 90))
         frame = [(0.0, 0.03), (-FRAME + 0.004, 0.03), (-FRAME, 0.026), (-FRAME, -0.03)]
-        scene.add("Window frame", Model((p.WOODWORK, upright(sweep(rectangle(WIDTH, HEIGHT), frame)))), at=(0, centre, -0.13))
+        scene.add(
+            "Window frame", Model((p.WOODWORK, upright(sweep(rectangle(WIDTH, HEIGHT), frame)))), at=(0, centre, -0.13)
+        )
         w, h = (WIDTH - 2 * FRAME) / 2, HEIGHT - 2 * FRAME
         bar = 0.05
         casement = [(0.0, -0.02), (0.0, 0.016), (-0.004, 0.02), (-bar + 0.008, 0.02), (-bar, 0.008), (-bar, -0.02)]
@@ -34,13 +36,21 @@ def build(scene):
         lever = tube([(0, 0.012, 0.03), (0, -0.02, 0.032), (0, -0.09, 0.036)], [0.009, 0.008, 0.006], 6, up=(0, 0, 1))
         scene.add("Window handle", Model((p.CHROME, grip), (p.CHROME, lever)), at=(0.025, centre - 0.05, -0.1105))
         board(scene)
-        scene.add("Daylight", Model((p.DAYLIGHT, quad((-WIDTH / 2, SILL_TOP, -NICHE_DEPTH), (WIDTH, 0, 0), (0, HEIGHT, 0)))))
+        scene.add(
+            "Daylight", Model((p.DAYLIGHT, quad((-WIDTH / 2, SILL_TOP, -NICHE_DEPTH), (WIDTH, 0, 0), (0, HEIGHT, 0))))
+        )
         curtains(scene)
 
 
 def board(scene):
-    profile = [(0.0, NICHE_Y0), (0.03, NICHE_Y0), (0.035, NICHE_Y0 + 0.005), (0.035, SILL_TOP - 0.005), (0.03, SILL_TOP),
-               (-NICHE_DEPTH, SILL_TOP)]
+    profile = [
+        (0.0, NICHE_Y0),
+        (0.03, NICHE_Y0),
+        (0.035, NICHE_Y0 + 0.005),
+        (0.035, SILL_TOP - 0.005),
+        (0.03, SILL_TOP),
+        (-NICHE_DEPTH, SILL_TOP),
+    ]
     surface = sweep(line(-WIDTH / 2, WIDTH / 2), profile)
     end = [(y, z) for z, y in profile[:5]] + [(SILL_TOP, 0.0)]
     surface.extend(polygon([(-WIDTH / 2, y, z) for y, z in end]))
@@ -54,7 +64,9 @@ def curtains(scene):
     half = WIDTH / 2 + 0.16
     rod = tube([(-half, rod_y, reach), (half, rod_y, reach)], 0.009, 8, caps=(False, False))
     ball = lathe([(0.0, -0.018), (0.013, -0.013), (0.018, 0.0), (0.013, 0.013), (0.0, 0.018)], 8)
-    scene.add("Curtain rod", Model().add(p.CHROME, rod, ball.moved(-half, rod_y, reach), ball.moved(half, rod_y, reach)))
+    scene.add(
+        "Curtain rod", Model().add(p.CHROME, rod, ball.moved(-half, rod_y, reach), ball.moved(half, rod_y, reach))
+    )
 
     def cloth(s, t):
         """Folds that widen a little towards the hem."""
@@ -65,4 +77,3 @@ def curtains(scene):
     model = Model((p.CURTAIN, sheet(cloth, 28, 2)))
     for side, x in (("left", -half + 0.15), ("right", half - 0.15)):
         scene.add(f"Curtain {side}", model, at=(x, 0, 0))
-

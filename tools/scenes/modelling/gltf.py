@@ -37,8 +37,11 @@ class Scene:
         self._children = outer
 
     def camera(self, name, eye, target, vertical_fov, aspect=4 / 3):
-        camera = {"type": "perspective", "name": name, "perspective": {
-            "aspectRatio": aspect, "yfov": math.radians(vertical_fov), "znear": 0.01}}
+        camera = {
+            "type": "perspective",
+            "name": name,
+            "perspective": {"aspectRatio": aspect, "yfov": math.radians(vertical_fov), "znear": 0.01},
+        }
         self._node(name, eye, look_rotation(eye, target), {"camera": camera})
 
     def _node(self, name, at, turn, content):
@@ -75,8 +78,13 @@ def _pack_glb(document, binary):
     text = json.dumps(document, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)
     total = 12 + 8 + len(text) + 8 + len(binary)
-    return (struct.pack("<4sII", b"glTF", 2, total) + struct.pack("<I4s", len(text), b"JSON") + text
-            + struct.pack("<I4s", len(binary), b"BIN\0") + binary)
+    return (
+        struct.pack("<4sII", b"glTF", 2, total)
+        + struct.pack("<I4s", len(text), b"JSON")
+        + text
+        + struct.pack("<I4s", len(binary), b"BIN\0")
+        + binary
+    )
 
 
 class _Document:
@@ -86,7 +94,12 @@ class _Document:
     def __init__(self, scene):
         self.scene = scene
         self.materials, self.textures, self.accessors = [], [], []
-        self.streams = {"POSITION": bytearray(), "NORMAL": bytearray(), "TEXCOORD_0": bytearray(), "indices": bytearray()}
+        self.streams = {
+            "POSITION": bytearray(),
+            "NORMAL": bytearray(),
+            "TEXCOORD_0": bytearray(),
+            "indices": bytearray(),
+        }
         self.extensions = set()
 
     def finish(self):
@@ -122,11 +135,15 @@ class _Document:
             "extensionsUsed": sorted(self.extensions),
             "scene": 0,
             "scenes": [{"name": self.scene.name, "nodes": self.scene.roots}],
-            "nodes": nodes, "meshes": meshes, "cameras": cameras,
+            "nodes": nodes,
+            "meshes": meshes,
+            "cameras": cameras,
             "materials": materials,
             "textures": [{"source": i, "sampler": 0} for i in range(len(images))],
             "samplers": [{"magFilter": 9729, "minFilter": 9729, "wrapS": 10497, "wrapT": 10497}] if images else [],
-            "images": images, "accessors": self.accessors, "bufferViews": views,
+            "images": images,
+            "accessors": self.accessors,
+            "bufferViews": views,
             "buffers": [{"byteLength": len(binary)}],
         }
         return {k: v for k, v in document.items() if v != []}, bytes(binary)
@@ -147,9 +164,12 @@ class _Document:
                 uv = (round(t[0] / texture.size[0], 6), round(t[1] / texture.size[1], 6)) if texture else ()
                 indices.append(vertices.setdefault((p, normal, uv), len(vertices)))
         positions = [v[0] for v in vertices]
-        primitive = {"attributes": {
-            "POSITION": self._accessor("POSITION", [c for p in positions for c in p], 3, bounds=positions),
-            "NORMAL": self._accessor("NORMAL", [c for v in vertices for c in v[1]], 3)}}
+        primitive = {
+            "attributes": {
+                "POSITION": self._accessor("POSITION", [c for p in positions for c in p], 3, bounds=positions),
+                "NORMAL": self._accessor("NORMAL", [c for v in vertices for c in v[1]], 3),
+            }
+        }
         if texture:
             primitive["attributes"]["TEXCOORD_0"] = self._accessor("TEXCOORD_0", [c for v in vertices for c in v[2]], 2)
         primitive["indices"] = self._accessor("indices", indices, 1)
@@ -161,8 +181,13 @@ class _Document:
         integer = stream == "indices"
         if integer:
             assert max(values) < 65535
-        accessor = {"bufferView": stream, "byteOffset": len(data), "componentType": USHORT if integer else FLOAT,
-                    "count": len(values) // width, "type": {1: "SCALAR", 2: "VEC2", 3: "VEC3"}[width]}
+        accessor = {
+            "bufferView": stream,
+            "byteOffset": len(data),
+            "componentType": USHORT if integer else FLOAT,
+            "count": len(values) // width,
+            "type": {1: "SCALAR", 2: "VEC2", 3: "VEC3"}[width],
+        }
         if bounds:
             single = [struct.unpack("<3f", struct.pack("<3f", *p)) for p in bounds]
             accessor["min"] = [min(p[i] for p in single) for i in range(3)]

@@ -21,8 +21,9 @@ def polygon(points, uv=None):
 def quad(origin, u, v):
     """The parallelogram of edges u and v, facing u x v, with uv in metres."""
     a, b = length(u), length(v)
-    return polygon([origin, add(origin, u), add(add(origin, u), v), add(origin, v)],
-                   [(0.0, b), (a, b), (a, 0.0), (0.0, 0.0)])
+    return polygon(
+        [origin, add(origin, u), add(add(origin, u), v), add(origin, v)], [(0.0, b), (a, b), (a, 0.0), (0.0, 0.0)]
+    )
 
 
 def tube(path, radius, sides, caps=(True, True), flatten=1.0, up=None, closed=False):
@@ -59,7 +60,10 @@ def tube(path, radius, sides, caps=(True, True), flatten=1.0, up=None, closed=Fa
             surface.quad(a, b, c, d)
         travelled += step
     if not closed:
-        for wanted, ring, (tangent, _, _), sign in ((caps[0], rings[0], frames[0], -1), (caps[1], rings[-1], frames[-1], 1)):
+        for wanted, ring, (tangent, _, _), sign in (
+            (caps[0], rings[0], frames[0], -1),
+            (caps[1], rings[-1], frames[-1], 1),
+        ):
             if wanted:
                 surface.extend(_disc([p for p, _ in ring], scale(tangent, sign), sign < 0))
     return surface
@@ -114,12 +118,19 @@ def curve(points, steps):
     ends = [sub(scale(points[0], 2.0), points[1]), *points, sub(scale(points[-1], 2.0), points[-2])]
     result = []
     for i in range(1, len(ends) - 2):
-        p0, p1, p2, p3 = ends[i - 1:i + 3]
+        p0, p1, p2, p3 = ends[i - 1 : i + 3]
         for s in range(steps):
             t = s / steps
-            c = add(scale(p1, 2.0), add(scale(sub(p2, p0), t), add(
-                scale(add(sub(scale(p0, 2.0), scale(p1, 5.0)), sub(scale(p2, 4.0), p3)), t * t),
-                scale(add(sub(scale(p1, 3.0), p0), sub(p3, scale(p2, 3.0))), t * t * t))))
+            c = add(
+                scale(p1, 2.0),
+                add(
+                    scale(sub(p2, p0), t),
+                    add(
+                        scale(add(sub(scale(p0, 2.0), scale(p1, 5.0)), sub(scale(p2, 4.0), p3)), t * t),
+                        scale(add(sub(scale(p1, 3.0), p0), sub(p3, scale(p2, 3.0))), t * t * t),
+                    ),
+                ),
+            )
             result.append(scale(c, 0.5))
     result.append(points[-1])
     return result

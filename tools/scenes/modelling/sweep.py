@@ -128,9 +128,16 @@ def _position(outline, j, p):
 
 def _arc_lengths(outline, radius):
     """Distance along the outline up to each point, one more for the closing edge."""
-    mean = (lambda j: (outline.points[j][0] + outline.offsets[j][0] * radius,
-                       outline.points[j][1] + outline.offsets[j][1] * radius)) if outline.round else (
-        lambda j: outline.points[j])
+    mean = (
+        (
+            lambda j: (
+                outline.points[j][0] + outline.offsets[j][0] * radius,
+                outline.points[j][1] + outline.offsets[j][1] * radius,
+            )
+        )
+        if outline.round
+        else (lambda j: outline.points[j])
+    )
     count, result = len(outline.points), [0.0]
     for j in range(count):
         a, b = mean(j), mean((j + 1) % count)
@@ -220,5 +227,6 @@ def slab(width, depth, height, bevel=0.003, radius=None, segments=1, bottom=Fals
 
 def disc_outline_slab(radius, height, bevel, segments, bottom=False):
     start = [(radius - bevel, 0.0), (radius, bevel)] if bottom else [(radius, 0.0)]
-    return sweep(circle(segments), start + [(radius, height - bevel), (radius - bevel, height)],
-                 cap_start=bottom, cap_end=True)
+    return sweep(
+        circle(segments), start + [(radius, height - bevel), (radius - bevel, height)], cap_start=bottom, cap_end=True
+    )

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// What changes only speed or memory changes no bit of a picture, in any layer: wave size, local size, memory, pruning
+// by needs, instructions of one processor, crops merged into one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "film/develop.h"
+#include "support/busy_room.h"
+#include "support/render.h"
+
+namespace obscura::test {
+namespace {
+
+using Identity = DeviceTest;
+
+constexpr uint32_t WIDTH = 96, HEIGHT = 72;
+
+std::vector<std::string> every_layer() {
+    std::vector<std::string> names;
+    for (const LayerInfo& info : layer_table())
+        names.emplace_back(info.name);
+    return names;
+}
+
+RenderSettings room_settings() {
+    RenderSettings settings = picture(WIDTH, HEIGHT, 4, 3);
+    settings.light_samples = 2;
+    settings.background = Rgb(0.2f, 0.3f, 0.4f);
+    settings.filter = PixelFilter::gauss;
+    return settings;
+}
+
+Image render_room(const RenderSettings& settings, const RenderCut& cut = {}) {
+    static const Scene room = busy_room();
+    return render(room, settings, every_layer(), cut).image;
+}
+
+const Image& reference() {
+    static const Image image = render_room(room_settings());
+    return image;
+}
+
+// Every channel of every layer has the same bits: -0 differs from 0.
+void expect_same_bits(const Image& image, const Image& expected) {
+    ASSERT_EQ(image.layers.size(), expected.layers.size());
+    for (size_t i = 0; i < image.layers.size(); ++i) {
+        const Layer& layer = image.layers[i];
+        ASSERT_EQ(layer.name, expected.layers[i].name);
+        ASSERT_EQ(layer.pixels.size(), expected.layers[i].pixels.size());
+        size_t different = 0;
+        for (size_t p = 0; p < layer.pixels.size(); ++p) {
+            different += std::bit_cast<uint32_t>(layer.pixels[p]) !=
+                         std::bit_cast<uint32_t>(expected.layers[i].pixels[p]);
+        }
+        EXPECT_EQ(different, 0u) << "values of layer " << layer.title();
+    }
+}
+
+TEST_F(Identity, PictureShowsEveryLayer) {
+    for (const Layer& layer : reference().layers) {
+        for (size_t c = 0; c < layer.channel_count(); ++c) {
+            const std::vector<double> values = channel(reference(), layer.name, c);
+            EXPECT_TRUE(std::ranges::all_of(values, [](double v) { return std::isfinite(v); }));
+            EXPECT_NE(std::ranges::min(values), std::ranges::max(values)) << layer.channel_path(c);
+        }
+    }
+}
+
+TEST_F(Identity, AnotherSeedChangesThePicture) {
+    RenderSettings settings = room_settings();
+    settings.seed = 1;
+    EXPECT_NE(render_room(settings).layers[0].pixels, reference().layers[0].pixels);
+}
+
+TEST_F(Identity, SamePictureAgain) {
+    expect_same_bits(render_room(room_settings()), reference());
+}
+
+TEST_F(Identity, SamePictureForEveryWaveSize) {
+    // Much less than a row, no multiple of anything, and more than a pass over the picture.
+    for (const uint64_t wave_size : {uint64_t{64}, uint64_t{1001}, uint64_t{WIDTH * HEIGHT + 17}})
+        expect_same_bits(render_room(room_settings(), {.wave_size = wave_size}), reference());
+}
+
+TEST_F(Identity, SamePictureForEveryLocalSize) {
+    for (const uint32_t local_size : {16u, 32u, 128u})
+        expect_same_bits(render_room(room_settings(), {.local_size = local_size}), reference());
+}
+
+TEST_F(Identity, SamePictureForEveryMemoryLimit) {
+    const Scene room = busy_room();
+    for (const uint64_t bytes : {uint64_t{256} << 10, uint64_t{3} << 20}) {
+        const RenderResult result = render(room, room_settings(), every_layer(), {.queue_bytes = bytes});
+        EXPECT_LT(result.wave_capacity, WIDTH * HEIGHT);
+        expect_same_bits(result.image, reference());
+    }
+}
+
+TEST_F(Identity, SamePictureWithPortableKernels) {
+    expect_same_bits(render_room(room_settings(), {.portable = true}), reference());
+}
+
+TEST_F(Identity, SamePictureMergedFromCrops) {
+    std::vector<Image> parts;
+    // A corner that is no multiple of a pixel, and the rest in two pieces.
+    for (const CropWindow& crop :
+         {CropWindow{0, 0.37, 0, 0.61}, CropWindow{0.37, 1, 0, 0.61}, CropWindow{0, 1, 0.61, 1}}) {
+        RenderSettings settings = room_settings();
+        settings.crop = crop;
+        parts.push_back(render_room(settings));
+    }
+    expect_same_bits(merge_images(parts, {"left", "right", "bottom"}), reference());
+}
+
+TEST_F(Identity, SamePictureWithAllNeeds) {
+    RenderSettings settings = room_settings();
+    settings.needs = NeedsMode::all;
+    expect_same_bits(render_room(settings), reference());
+}
+
+// The room needs nearly everything; these settings and scenes need little.
+TEST_F(Identity, SamePictureWithAllNeedsWherePruningCutsMost) {
+    const Scene furnace = furnace_sphere(Rgb(0.5f, 0.3f, 0.2f), Rgb(1, 2, 3));
+    SceneBuilder builder;
+    builder.box({-1, -1, -1}, {1, 1, 1}, builder.material(matte(Rgb(0.5f))));
+    builder.light(point_light({2, 3, 4}, Rgb(9)));
+    builder.camera({2, 3, 4}, {0, 0, 0});
+    const Scene box = builder.finish();
+    std::vector<RenderSettings> list(5, picture(24, 18, 2, 3));
+    list[1].bleeding = false;
+    list[1].falloff.kind = FalloffKind::step;
+    list[2].obscurance = false;
+    list[3].direct = list[3].specular = false;
+    list[4].ambient = Ambient::constant;
+    for (const Scene* scene : {&furnace, &box}) {
+        for (RenderSettings settings : list) {
+            const Image pruned = render(*scene, settings, every_layer()).image;
+            settings.needs = NeedsMode::all;
+            expect_same_bits(render(*scene, settings, every_layer()).image, pruned);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace obscura::test

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stage film: each pixel adds its own slots, in ascending order, to what it holds.
+#include "support/device.h"
+#include "support/kernel_queue.h"
+#include "support/scene_builder.h"
+
+#include <limits>
+
+namespace obscura {
+namespace {
+
+constexpr uint32_t PIXELS = 6;
+
+class FilmStage : public test::DeviceTest {
+  protected:
+    // A wave over a picture of 3 x 2 pixels; slot s holds values of which the order of summation shows.
+    test::StageBench bench(uint32_t capacity) {
+        test::SceneBuilder builder;
+        builder.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.material(test::matte(Rgb(0.5f))));
+        RenderSettings settings;
+        settings.width = 3;
+        settings.height = 2;
+        settings.spp = 8;
+        test::StageBench bench(device(), builder.finish(), settings, capacity);
+        for (uint32_t slot = 0; slot < capacity; ++slot) {
+            for (uint32_t layer = 0; layer < BEAUTY_LAYERS; ++layer)
+                bench.layer(layer, slot) = value(layer, slot);
+        }
+        for (uint32_t pixel = 0; pixel < PIXELS; ++pixel) {
+            for (uint32_t layer = 0; layer < BEAUTY_LAYERS; ++layer)
+                bench.film_layer(layer, pixel) = {1, 2, static_cast<float>(pixel), 0};
+        }
+        return bench;
+    }
+
+    static f32x4 value(uint32_t layer, uint32_t slot) {
+        const float x = 0.1f * static_cast<float>(slot + 1) + static_cast<float>(layer);
+        return {x, 1e7f * x, 1 / x, 1};
+    }
+
+    // The sums that the contract asks for.
+    static f32x4 expected(uint32_t layer, uint32_t pixel, uint32_t first_pixel, uint32_t count) {
+        f32x4 sum{1, 2, static_cast<float>(pixel), 0};
+        for (uint32_t slot = 0; slot < count; ++slot) {
+            if ((first_pixel + slot) % PIXELS != pixel) continue;
+            const f32x4 v = value(layer, slot);
+            sum = {sum.x + v.x, sum.y + v.y, sum.z + v.z, sum.w + v.w};
+        }
+        return sum;
+    }
+
+    static void expect_sums(test::StageBench& bench, uint32_t first_pixel, uint32_t count) {
+        for (uint32_t pixel = 0; pixel < PIXELS; ++pixel) {
+            for (uint32_t layer = 0; layer < BEAUTY_LAYERS; ++layer) {
+                EXPECT_EQ(test::bits(bench.film_layer(layer, pixel)),
+                          test::bits(expected(layer, pixel, first_pixel, count)))
+                    << "pixel " << pixel << ", layer " << layer;
+            }
+        }
+    }
+};
+
+TEST_F(FilmStage, AddsSlotsOfAFullWaveInAscendingOrder) {
+    test::StageBench wave = bench(3 * PIXELS);
+    wave.run_film(0, 3 * PIXELS);
+    expect_sums(wave, 0, 3 * PIXELS);
+    EXPECT_TRUE(wave.guards_untouched());
+    EXPECT_EQ(wave.counters[STATUS_CODE], STATUS_OK);
+}
+
+TEST_F(FilmStage, WaveMayStartAndEndInsideThePicture) {
+    test::StageBench wave = bench(20);
+    wave.run_film(4, 15);
+    expect_sums(wave, 4, 15);
+}
+
+TEST_F(FilmStage, PixelsBeyondAShortWaveStay) {
+    test::StageBench wave = bench(16);
+    wave.run_film(5, 2);  // pixels 5 and 0
+    expect_sums(wave, 5, 2);
+}
+
+TEST_F(FilmStage, InfiniteContributionIsReported) {
+    test::StageBench wave = bench(8);
+    wave.layer(LAYER_DIRECT, 3).y = std::numeric_limits<float>::infinity();
+    wave.run_film(0, 8);
+    EXPECT_EQ(wave.counters[STATUS_CODE], STATUS_NOT_FINITE);
+    EXPECT_EQ(wave.counters[STATUS_STAGE], STAGE_FILM);
+    EXPECT_EQ(wave.counters[STATUS_ITEM], 3U);
+}
+
+TEST_F(FilmStage, NoItemsDoNothing) {
+    test::StageBench wave = bench(8);
+    const auto before = wave.snapshot();
+    wave.run_film(0, 0);
+    EXPECT_EQ(wave.snapshot(), before);
+}
+
+}  // namespace
+}  // namespace obscura

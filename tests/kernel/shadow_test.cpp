@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stage shadow: what stands between a surface and a light, and nothing else, takes its visibility.
+#include "scene/material.h"
+#include "support/device.h"
+#include "support/kernel_queue.h"
+#include "support/scene_builder.h"
+
+#include <limits>
+
+namespace obscura {
+namespace {
+
+constexpr float FAR = std::numeric_limits<float>::infinity();
+const Rgb TINT(0.25f, 0.5f, 1);
+
+// In the plane z = 0: a wall for x in [0, 1], a clear pane for x in [2, 3]; a second pane in front, x in [2.5, 3].
+Scene wall_and_panes() {
+    Material clear = test::matte(TINT);
+    clear.transmission = 1;
+    test::SceneBuilder builder;
+    const uint32_t pane = builder.material(clear);
+    builder.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.material(test::matte(Rgb(0.5f))));
+    builder.quad({2, 0, 0}, {1, 0, 0}, {0, 1, 0}, pane);
+    builder.quad({2.5f, 0, 0.5f}, {0.5f, 0, 0}, {0, 1, 0}, pane);
+    return builder.finish();
+}
+
+struct Query {
+    V3f origin, to_light;
+    float t_light;
+    V3f expected;
+};
+
+const V3f ONE_PANE = V3f(V3d(TINT) * (1 - pane_reflectance(1)));
+
+const std::vector<Query> QUERIES = {
+    {{0.5f, 0.5f, 1}, {0, 0, -2}, 1, V3f(0)},               // wall between
+    {{0.5f, 0.5f, 1}, {0, 0, -0.5f}, 1, V3f(1)},            // wall behind the light
+    {{0.5f, 0.5f, 1}, {0, 0, 2}, 1, V3f(1)},                // wall behind the surface
+    {{0.5f, 0.5f, 1}, {1.25f, 0, -2}, 1, V3f(1)},           // past the wall
+    {{0.5f, 0.5f, 1}, {0, 0, -1}, FAR, V3f(0)},             // a sun behind the wall
+    {{0.5f, 0.5f, 1}, {0, 0, 1}, FAR, V3f(1)},              // a sun in the open
+    {{2.25f, 0.5f, 1}, {0, 0, -2}, 1, ONE_PANE},            // through one pane
+    {{2.75f, 0.5f, 1}, {0, 0, -3}, 1, ONE_PANE* ONE_PANE},  // through two
+    {{2.75f, 0.5f, 1}, {0, 0, -0.75f}, 1, ONE_PANE},        // the light stands between the two
+    {{2.75f, 0.5f, 1}, {0, 0, -1}, FAR, ONE_PANE* ONE_PANE},
+};
+const auto COUNT = static_cast<uint32_t>(QUERIES.size());
+
+class ShadowStage : public test::DeviceTest {
+  protected:
+    // Query i has the result index COUNT - 1 - i; two light samples for each of five slots: an exactly full queue.
+    test::StageBench bench() {
+        test::StageBench bench(device(), wall_and_panes(), {}, COUNT / 2);
+        for (uint32_t i = 0; i < COUNT; ++i) {
+            const Query& query = QUERIES[i];
+            bench.shadow_rays().at(SHADOW_ORIGIN, i) =
+                test::lane_of(query.origin, test::as_float(COUNT - 1 - i));
+            bench.shadow_rays().at(SHADOW_DIRECTION, i) = test::lane_of(query.to_light, query.t_light);
+        }
+        bench.counters[COUNT_SHADOWS] = COUNT;
+        return bench;
+    }
+    // The result index counts over both lanes.
+    static f32x4 visibility(test::StageBench& bench, uint32_t query) {
+        const uint32_t index = COUNT - 1 - query;
+        return bench.visibility().at(index / bench.capacity, index % bench.capacity);
+    }
+};
+
+TEST_F(ShadowStage, ExactlyFullQueueFindsWhatIsBetweenSurfaceAndLight) {
+    test::StageBench wave = bench();
+    ASSERT_EQ(wave.capacity * wave.light_samples, COUNT);
+    wave.run_shadow();
+    for (uint32_t i = 0; i < COUNT; ++i) {
+        const V3f seen = test::xyz_of(visibility(wave, i));
+        EXPECT_LT((seen - QUERIES[i].expected).length(), 1e-6f) << "query " << i << ": " << seen.x;
+    }
+    EXPECT_TRUE(wave.guards_untouched());
+    EXPECT_EQ(wave.counters[STATUS_CODE], STATUS_OK);
+}
+
+// Without panes in the scene the kernel is built for any hit: a pane is an obstacle then.
+TEST_F(ShadowStage, AnyHitVariantAgreesOnOpaqueSurfaces) {
+    test::StageBench wave = bench();
+    wave.kernel_options = "";
+    wave.run_shadow();
+    for (uint32_t i = 0; i < COUNT; ++i) {
+        const bool free = QUERIES[i].expected == V3f(1);
+        EXPECT_EQ(test::xyz_of(visibility(wave, i)), free ? V3f(1) : V3f(0)) << "query " << i;
+    }
+}
+
+TEST_F(ShadowStage, OnlyCountedRaysAreTraced) {
+    test::StageBench wave = bench();
+    wave.counters[COUNT_SHADOWS] = 4;
+    wave.run_shadow();
+    for (uint32_t i = 0; i < COUNT; ++i) {
+        const bool written = test::bits(visibility(wave, i)) != test::bits(test::canary());
+        EXPECT_EQ(written, i < 4) << "query " << i;
+    }
+}
+
+TEST_F(ShadowStage, NoRaysDoNothing) {
+    test::StageBench wave = bench();
+    wave.counters[COUNT_SHADOWS] = 0;
+    const auto before = wave.snapshot();
+    wave.run_shadow();
+    EXPECT_EQ(wave.snapshot(), before);
+}
+
+}  // namespace
+}  // namespace obscura
