@@ -13,7 +13,14 @@ endfunction()
 
 obscura_script_test(unit include_order_test)
 obscura_script_test(unit readme_test)
+obscura_script_test(unit test_scenes)
 if(TARGET obscura)
   obscura_script_test(image options_test)
   obscura_script_test(image readme_examples_test)
+  # R_ave and I_A of every scene against a computation that shares no code with the program.
+  foreach(scene cornell furnace kitchen planes sphere wall)
+    add_test(NAME radiometry_of_${scene} COMMAND ${OBSCURA_PYTHON} -B ${PROJECT_SOURCE_DIR}/tools/check_radiometry.py
+             $<TARGET_FILE:obscura> ${PROJECT_SOURCE_DIR}/scenes/${scene})
+    set_tests_properties(radiometry_of_${scene} PROPERTIES LABELS unit)
+  endforeach()
 endif()

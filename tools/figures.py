@@ -59,16 +59,17 @@ def parse_arguments():
 
 
 def render(arguments, folder, key, options):
-    """Renders one picture; returns its statistics."""
+    """Renders one picture; returns its statistics. Warnings, the same for every picture, are not repeated here."""
     stats = folder / f"{key}.json"
     command = [str(ROOT / "build/obscura"), "render", arguments.scene, "--quiet"]
     command += ["-o", str(folder / f"{key}.exr"), "--preview", str(folder / f"{key}.png"), "--stats", str(stats)]
     command += ["--width", str(arguments.width), "--height", str(arguments.height), "--spp", str(arguments.spp)]
     if arguments.device:
         command += ["--device", arguments.device]
-    result = subprocess.run(command + options, check=False)
+    result = subprocess.run(command + options, stderr=subprocess.PIPE, text=True, check=False)
     if result.returncode != 0:
-        sys.exit(f"tools/figures: obscura failed with exit code {result.returncode} on {' '.join(command + options)}")
+        sys.exit(f"{result.stderr}tools/figures: obscura ended with exit code {result.returncode}: "
+                 f"{' '.join(command + options)}")
     return json.loads(stats.read_text(encoding="utf-8"))
 
 

@@ -204,6 +204,7 @@ class Writer {
         bvh_.nodes.push_back(empty_node());
         bvh_.depth = std::max(bvh_.depth, depth);
         std::vector<Child> children;
+        children.reserve(binary_nodes.size());
         for (const uint32_t node : binary_nodes)
             children.push_back(make_child(node));
         merge_leaves(children);

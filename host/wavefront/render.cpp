@@ -30,6 +30,7 @@ StageKernels prepare_kernels(ProgramLibrary& library, const Needs& needs, const 
     const bool all = job.settings.needs == NeedsMode::all;
     std::vector<KernelRequest> requests;
     const std::vector<Stage> stages = needed_stages(needs);
+    requests.reserve(stages.size());
     for (const Stage stage : stages) {
         requests.push_back({std::string(stage_name(stage)), stage_options(stage, needs, all, job.portable)});
     }

@@ -56,7 +56,7 @@ typedef struct Frame {
 } Frame;
 
 #ifdef __cplusplus
-static_assert(sizeof(Frame) == 18 * 16, "device layout");
+static_assert(sizeof(Frame) == 288, "device layout");
 }  // namespace obscura
 #endif
 

@@ -15,6 +15,20 @@
 
 namespace obscura::test {
 
+inline const Falloff STEP{FalloffKind::step, 1};
+inline const Falloff LINEAR{FalloffKind::linear, 1};
+inline const Falloff SQRT{FalloffKind::sqrt, 1};
+inline const Falloff EXP{FalloffKind::exp, 1};
+inline const std::vector<Falloff> MAIN_FALLOFFS{STEP, LINEAR, SQRT, EXP};
+inline const std::vector<Falloff> ALL_FALLOFFS{STEP,
+                                               LINEAR,
+                                               SQRT,
+                                               EXP,
+                                               {FalloffKind::exp, 5},
+                                               {FalloffKind::cbrt, 1},
+                                               {FalloffKind::expjump, 1},
+                                               {FalloffKind::pow, 0.25}};
+
 // E_3(x) = int_1^inf exp(-x t) / t^3 dt by recurrence from E_1.
 inline double exponential_integral_3(double x) {
     if (x <= 0) return 0.5;

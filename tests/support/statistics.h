@@ -94,6 +94,14 @@ class ZTable {
             ADD_FAILURE() << line;
     }
 
+    // Every comparison would notice if its number were off by one per cent. Zero has no per cent.
+    void expect_one_percent_matters() const {
+        const double most = limit();
+        for (const Row& row : rows_) {
+            EXPECT_LE(row.high - row.low + most * row.found.standard_error, 0.01 * row.high) << row.name;
+        }
+    }
+
     size_t size() const { return rows_.size(); }
 
   private:

@@ -7,10 +7,6 @@
 namespace obscura::test {
 namespace {
 
-const std::vector<Falloff> ALL_FALLOFFS{
-    {FalloffKind::step, 1}, {FalloffKind::linear, 1}, {FalloffKind::sqrt, 1},    {FalloffKind::cbrt, 1},
-    {FalloffKind::exp, 1},  {FalloffKind::exp, 5},    {FalloffKind::expjump, 1}, {FalloffKind::pow, 0.25}};
-
 // W = 2 int_0^1 c rho(d(c)) dc for geometry that depends on the cosine c alone.
 template <typename Distance>
 double quadrature(const Falloff& falloff, const Distance& distance) {
