@@ -62,6 +62,13 @@ class Program(unittest.TestCase):
         documented = long_options(" ".join(row[0] for row in table("Options of render")))
         self.assertEqual(sorted(long_options(run_help("render")) - {"--help"}), sorted(documented))
 
+    def test_layers_are_those_of_the_program(self):
+        program = os.environ["OBSCURA_PROGRAM"]
+        command = [program, "render", str(ROOT / "scenes/cornell"), "-o", os.devnull, "--layers", "nope"]
+        refusal = subprocess.run(command, capture_output=True, text=True, check=False).stderr
+        listed = re.search(r"choose from (.*), or all, or none", refusal).group(1).split(", ")
+        self.assertEqual(sorted(listed), sorted(row[0] for row in table("Layers") if row[0] != "(none)"))
+
     def test_examples_use_options_that_exist(self):
         examples = re.findall(r"^(?:[A-Z_]+=\S+ )?build/obscura (\w+)(.*)$", README, re.MULTILINE)
         self.assertGreater(len(examples), 0)
