@@ -58,7 +58,7 @@ std::vector<std::string> all_layer_names() {
 
 // "all" and "none" stand for themselves; anything else must be in the table.
 std::vector<std::string> resolve_layers(const std::vector<std::string>& wanted) {
-    const std::vector<std::string> known = all_layer_names();
+    std::vector<std::string> known = all_layer_names();
     if (wanted == std::vector<std::string>{"all"}) return known;
     if (wanted == std::vector<std::string>{"none"}) return {};
     std::vector<std::string> layers;

@@ -185,7 +185,7 @@ void add_work_options(CLI::App& command, RenderOptions& o) {
 }  // namespace
 
 std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
-    const auto options = std::make_shared<RenderOptions>();
+    auto options = std::make_shared<RenderOptions>();
     command
         .add_option("scene", options->scene,
                     "glTF file (.gltf, .glb), or a folder that holds one of its name")

@@ -155,7 +155,7 @@ bool ProgramLibrary::load(const Source& source) {
     cl::Program program(device_.context(), {device_.handle()}, {*binary}, &status, &code);
     if (code != CL_SUCCESS || program.build(device_.handle(), source.options.c_str()) != CL_SUCCESS)
         return false;
-    cl::Kernel(program, source.kernel.c_str(), &code);
+    const cl::Kernel kernel(program, source.kernel.c_str(), &code);
     if (code != CL_SUCCESS) return false;
     programs_.emplace(source.key, std::move(program));
     ++cache_hit_count_;

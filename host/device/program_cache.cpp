@@ -21,7 +21,7 @@ std::filesystem::path default_folder() {
         const char* const value = std::getenv(name);
         return value != nullptr ? value : "";
     };
-    if (const auto folder = variable("OBSCURA_CACHE_DIR"); !folder.empty()) return folder;
+    if (auto folder = variable("OBSCURA_CACHE_DIR"); !folder.empty()) return folder;
     // The XDG base directory specification says that a relative path is to be ignored.
     if (const auto folder = variable("XDG_CACHE_HOME"); folder.is_absolute()) return folder / "obscura";
     if (const auto home = variable("HOME"); !home.empty()) return home / ".cache" / "obscura";

@@ -20,7 +20,7 @@ constexpr size_t GLB_CHUNK_HEADER_BYTES = 8;
 constexpr int MAX_JSON_DEPTH = 200;
 
 uint32_t load_u32(const std::vector<std::byte>& bytes, size_t offset) {
-    uint32_t value;
+    uint32_t value = 0;
     std::memcpy(&value, bytes.data() + offset, sizeof value);
     return value;
 }
@@ -116,7 +116,7 @@ tinygltf::FsCallbacks file_callbacks() {
 // which they are not.
 std::string errors_in_one_line(std::string text) {
     const std::string not_required = "'inverseBindMatrices' property is missing in Skin.\n";
-    for (size_t at; (at = text.find(not_required)) != std::string::npos;)
+    for (size_t at = text.find(not_required); at != std::string::npos; at = text.find(not_required))
         text.erase(at, not_required.size());
     std::string line;
     for (const char c : text)

@@ -42,7 +42,7 @@ M44d local_matrix(const GltfReader& reader, const std::string& place, const tiny
     if (!node.matrix.empty()) {
         for (int i = 0; i < 4; ++i) {
             for (int j = 0; j < 4; ++j)
-                local[i][j] = node.matrix[static_cast<size_t>(4 * i + j)];
+                local[i][j] = node.matrix[4 * static_cast<size_t>(i) + static_cast<size_t>(j)];
         }
         if (local[0][3] != 0 || local[1][3] != 0 || local[2][3] != 0 || local[3][3] != 1)
             reader.fail(place, "its matrix is not affine; the last row must be 0 0 0 1.");
