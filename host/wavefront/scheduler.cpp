@@ -75,9 +75,9 @@ uint32_t Scheduler::run_depth(const Frame& frame, uint32_t ray_count, uint32_t d
     run(Stage::shadow, "shadow", uint64_t{ray_count} * light_samples, scene_.nodes, scene_.blocks,
         scene_.triangles, scene_.materials, scene_.texels, scene_.tables, queues_.shadow_rays,
         queues_.visibility, queues_.counters, shadow_capacity);
-    run(Stage::obscurance, "obscurance", uint64_t{ray_count} * frame.sampling.y, queues_.frame, scene_.nodes,
-        scene_.blocks, scene_.triangles, scene_.materials, scene_.texels, scene_.tables, queues_.points,
-        queues_.paths, queues_.results, queues_.counters, depth);
+    run(Stage::obscurance, "obscurance", ray_count, queues_.frame, scene_.nodes, scene_.blocks,
+        scene_.triangles, scene_.materials, scene_.texels, scene_.tables, queues_.points, queues_.paths,
+        queues_.results, queues_.counters, depth);
     run(Stage::gather, "gather", ray_count, queues_.frame, queues_.rays, queues_.visibility, queues_.results,
         queues_.paths, ray_count, depth);
 

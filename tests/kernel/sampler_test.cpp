@@ -56,7 +56,11 @@ kernel void units(global float* out, uint first, uint step, uint count) {
 
 kernel void directions(global const uint2* points, global float4* out, uint count) {
     const uint i = (uint)get_global_id(0);
-    if (i < count) out[i] = (float4)(cosine_hemisphere(unit_float2(points[i])), 0.0f);
+    if (i >= count) return;
+    const float2 u = unit_float2(points[i]);
+    float8 x, y, z;
+    cosine_hemisphere8((float8)(u.x), (float8)(u.y), &x, &y, &z);
+    out[i] = (float4)(x.s0, y.s0, z.s0, 0.0f);
 }
 )";
 

@@ -116,15 +116,18 @@ kernel void probe(global const Frame* frame, global const BvhNode* nodes, global
     const uint item = (uint)get_global_id(0);
     if (item >= count) return;
     const uint k_count = frame->sampling.y;
-    const ObscuranceRay ray =
-        make_obscurance_ray(frame, points, paths, item / k_count, item % k_count, depth);
-    const float limit = distance_limit(ray.start, ray.direction, frame->obscurance.x);
-    const float3 origin = ray.position + ray.start;
-    const Hit hit = traverse(nodes, blocks, origin, ray.direction, limit, false);
+    const ObscurancePoint point = load_obscurance_point(frame, points, paths, item / k_count, depth);
+    const uint lane = item % k_count % DIRECTION_BATCH;
+    Directions directions;
+    obscurance_directions(&point, item % k_count - lane, &directions);
+    const float3 direction = (float3)(directions.x[lane], directions.y[lane], directions.z[lane]);
+    const float limit = distance_limit(point.start, direction, frame->obscurance.x);
+    const float3 origin = point.position + point.start;
+    const Hit hit = traverse(nodes, blocks, origin, direction, limit, false);
     out[4u * item] = (float4)(origin, limit);
-    out[4u * item + 1u] = (float4)(ray.direction, as_float(ray.slot));
+    out[4u * item + 1u] = (float4)(direction, as_float(point.slot));
     out[4u * item + 2u] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
-    out[4u * item + 3u] = (float4)(ray.start, 0.0f);
+    out[4u * item + 3u] = (float4)(point.start, 0.0f);
 })";
         probe_ = library_.kernel_from_text("obscurance probe", SOURCE, "probe");
     }
