@@ -65,14 +65,14 @@ SceneMaterial make_material(const Scene& scene, const Material& material,
     uint32_t flags = 0;
     if (material.double_sided) flags |= MATERIAL_DOUBLE_SIDED;
     if (material.unlit) flags |= MATERIAL_UNLIT;
-    if (material.transmission > 0) flags |= MATERIAL_PANE;
+    if (is_pane(material)) flags |= MATERIAL_PANE;
     if (model.has_specular) flags |= model.alpha > 0 ? MATERIAL_GLOSSY : MATERIAL_MIRROR;
     return {lane(material.base_color, material.metallic),
             lane(model.dielectric_f0, model.alpha),
             lane(model.f90, material.transmission),
             lane(model.diffuse_scale, 0),
             lane(model.mean_scale, 0),
-            lane(material.unlit ? V3f(0) : material.emission, std::bit_cast<float>(flags)),
+            lane(is_emissive(material) ? material.emission : V3f(0), std::bit_cast<float>(flags)),
             texture_lane(scene, material, first_texel)};
 }
 
@@ -97,10 +97,9 @@ std::vector<AreaLight> make_area_lights(const Scene& scene, std::vector<SceneTri
     std::vector<uint32_t> emitters;
     for (uint32_t i = 0; i < scene.triangles.size(); ++i) {
         const Material& material = scene.materials[scene.triangles[i].material];
-        const double power = material.unlit ? 0
-                                            : mean_channel(V3d(material.emission)) * triangle_area(scene, i) *
-                                                  (material.double_sided ? 2 : 1);
-        if (!(power > 0)) continue;
+        if (!is_emissive(material)) continue;
+        const double power =
+            mean_channel(V3d(material.emission)) * triangle_area(scene, i) * (material.double_sided ? 2 : 1);
         triangles[i].ids.z = static_cast<uint32_t>(emitters.size());
         powers.push_back(power);
         emitters.push_back(i);

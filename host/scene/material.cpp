@@ -14,7 +14,7 @@ constexpr int PANE_INTERVALS = 256;  // of Simpson's rule; the integrand is smoo
 
 // All in double; the kernels get the rounded values.
 struct ExactModel {
-    RgbD dielectric_f0, f0, mean_albedo;
+    RgbD dielectric_f0{0, 0, 0}, f0{0, 0, 0}, mean_albedo{0, 0, 0};
     double f90 = 0;
     double alpha = 0;
     double diffuse_scale = 0;
@@ -22,11 +22,13 @@ struct ExactModel {
 
 ExactModel exact_model(const Material& material) {
     ExactModel model;
+    if (material.unlit) return model;
     const double metallic = static_cast<double>(material.metallic);
     const double specular = static_cast<double>(material.specular);
     const double roughness = static_cast<double>(material.roughness);
     model.f90 = specular + (1 - specular) * metallic;
-    model.alpha = material.roughness < MIRROR_ROUGHNESS ? 0 : roughness * roughness;
+    const bool mirror = material.roughness < MIRROR_ROUGHNESS || is_pane(material);
+    model.alpha = mirror ? 0 : roughness * roughness;
     model.diffuse_scale = (1 - metallic) * (1 - static_cast<double>(material.transmission));
     const AlbedoTerms mean = mean_albedo(model.alpha);
     for (int c = 0; c < 3; ++c) {
@@ -39,6 +41,14 @@ ExactModel exact_model(const Material& material) {
 }
 
 }  // namespace
+
+bool is_pane(const Material& material) {
+    return !material.unlit && material.transmission > 0;
+}
+
+bool is_emissive(const Material& material) {
+    return !material.unlit && (material.emission.x > 0 || material.emission.y > 0 || material.emission.z > 0);
+}
 
 double pane_reflectance(double mu) {
     const double f = DIELECTRIC_F0 + (1 - DIELECTRIC_F0) * std::pow(1 - mu, 5);
@@ -55,13 +65,13 @@ double mean_pane_reflectance() {
 
 SurfaceModel surface_model(const Material& material) {
     const ExactModel exact = exact_model(material);
-    const double transmission = static_cast<double>(material.transmission);
+    const double transmission = is_pane(material) ? static_cast<double>(material.transmission) : 0;
     SurfaceModel model;
     model.dielectric_f0 = Rgb(exact.dielectric_f0);
     model.f0 = Rgb(exact.f0);
     model.f90 = Rgb(static_cast<float>(exact.f90));
     model.alpha = static_cast<float>(exact.alpha);
-    model.has_specular = material.specular > 0 || material.metallic > 0;
+    model.has_specular = !material.unlit && (material.specular > 0 || material.metallic > 0);
     model.diffuse_scale = Rgb(static_cast<float>(exact.diffuse_scale));
     model.mean_scale = Rgb(exact.diffuse_scale * (RgbD(1, 1, 1) - exact.mean_albedo));
     model.opacity = 1 - transmission * (1 - mean_pane_reflectance());

@@ -27,7 +27,7 @@ Counts count_features(const Scene& scene) {
         const uint32_t index = scene.triangles[i].material;
         const Material& material = scene.materials[index];
         used[index] = true;
-        if (!material.unlit && is_bright(material.emission)) ++counts.emissive_triangles;
+        if (is_emissive(material)) ++counts.emissive_triangles;
         if (is_smooth(scene, i)) ++counts.smooth_triangles;
     }
     for (size_t i = 0; i < used.size(); ++i) {
@@ -36,13 +36,10 @@ Counts count_features(const Scene& scene) {
         const SurfaceModel model = surface_model(material);
         ++counts.used_materials;
         if (material.base_color_texture != NO_TEXTURE) ++counts.textured;
-        if (material.unlit) {
-            ++counts.unlit;
-            continue;  // shows its base colour and nothing else
-        }
-        if (is_bright(material.emission)) ++counts.emissive;
+        if (material.unlit) ++counts.unlit;
+        if (is_emissive(material)) ++counts.emissive;
         if (model.has_specular) ++(model.alpha > 0 ? counts.rough : counts.mirrors);
-        if (material.transmission > 0) ++counts.panes;
+        if (is_pane(material)) ++counts.panes;
     }
     for (const PunctualLight& light : scene.lights) {
         if (!is_bright(light.intensity)) continue;

@@ -129,13 +129,27 @@ TEST_F(Identity, SamePictureWithAllNeedsWherePruningCutsMost) {
     builder.light(point_light({2, 3, 4}, Rgb(9)));
     builder.camera({2, 3, 4}, {0, 0, 0});
     const Scene box = builder.finish();
+    // An unlit poster and an unlit sheet with a transmission that doesn't count, between a floor and its lamp.
+    SceneBuilder posters;
+    Material poster = matte(Rgb(0.9f, 0.5f, 0.1f));
+    poster.specular = 1;
+    poster.unlit = true;
+    Material sheet = poster;
+    sheet.transmission = 0.8f;
+    sheet.roughness = 0.3f;
+    posters.quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, posters.material(matte(Rgb(0.5f))));
+    posters.quad({-2, 0, -1}, {2, 0, 0}, {0, 1, 0}, posters.material(poster));
+    posters.quad({-1, 0.5f, 1}, {2, 0, 0}, {0, 0, -2}, posters.material(sheet));
+    posters.light(point_light({0.5f, 3, 0}, Rgb(9)));
+    posters.camera({2, 3, 4}, {0, 0, 0});
+    const Scene gallery = posters.finish();
     std::vector<RenderSettings> list(5, picture(24, 18, 2, 3));
     list[1].bleeding = false;
     list[1].falloff.kind = FalloffKind::step;
     list[2].obscurance = false;
     list[3].direct = list[3].specular = false;
     list[4].ambient = Ambient::constant;
-    for (const Scene* scene : {&furnace, &box}) {
+    for (const Scene* scene : {&furnace, &box, &gallery}) {
         for (RenderSettings settings : list) {
             const Image pruned = render(*scene, settings, every_layer()).image;
             settings.needs = NeedsMode::all;

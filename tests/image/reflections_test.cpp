@@ -173,5 +173,27 @@ TEST_F(Reflections, MirrorShowsALampWithFresnel) {
     }
 }
 
+// A white sheet in a room of radiance 1 shows 1, of what material so ever: reflected by its pane and by its lobe, passed,
+// diffuse. Roughness must not add a second reflection.
+TEST_F(Reflections, WhitePaneInAUniformRoomIsInvisible) {
+    ZTable table;
+    for (const float transmission : {0.5f, 1.0f}) {
+        for (const float roughness : {0.0f, 0.5f, 1.0f}) {
+            Material sheet = clear_pane();
+            sheet.base_color = Rgb(1);
+            sheet.specular = 1;
+            sheet.roughness = roughness;
+            sheet.transmission = transmission;
+            SceneBuilder builder = floor_scene(sheet);
+            builder.box({-3, -3, -3}, {3, 3, 3}, builder.material(matte(Rgb(0), Rgb(1))), true);
+            const Image image = render(builder.finish(), point_settings(256, 4)).image;
+            table.add(fmt::format("transmission {}, roughness {}", transmission, roughness),
+                      channel(image, "", 0), 1, 1, 1e-5);
+        }
+    }
+    table.expect_no_failure();
+    table.expect_one_percent_matters();
+}
+
 }  // namespace
 }  // namespace obscura::test

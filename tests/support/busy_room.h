@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A small room with one of everything that obscura models: colours, a texture, glossy and mirroring spheres, a
-// smooth-shaded one, a clear pane, an area light, a point, a spot and a directional light. Open at the front.
+// smooth-shaded one, a clear pane, an unlit picture, an area light, a point, a spot and a directional light. Open at the front.
 #pragma once
 
 #include "support/scene_builder.h"
@@ -23,6 +23,15 @@ inline Material clear_pane() {
     pane.transmission = 1;
     pane.double_sided = true;
     return pane;
+}
+
+// Opaque, for all its transmission: that is a property of lit surfaces.
+inline Material unlit_picture() {
+    Material picture = matte(Rgb(0.2f, 0.4f, 0.9f));
+    picture.name = "picture";
+    picture.transmission = 0.5f;
+    picture.unlit = true;
+    return picture;
 }
 
 inline PunctualLight point_light(const V3f& position, const Rgb& intensity) {
@@ -76,6 +85,7 @@ inline Scene busy_room() {
     builder.sphere({1.0f, 0.6f, -0.8f}, 0.6f, 2, builder.material(metal(Rgb(0.95f), 0)), false, true);
     builder.sphere({0, 0.3f, 0.2f}, 0.3f, 1, white, false, true);
     builder.quad({0.4f, 0, 0.9f}, {1.2f, 0, 0.3f}, {0, 1.5f, 0}, builder.material(clear_pane()));
+    builder.quad({1.4f, 1.2f, -1.9f}, {0.4f, 0, 0}, {0, 0.6f, 0.1f}, builder.material(unlit_picture()));
     builder.light(point_light({-1.5f, 2.2f, 1}, Rgb(1.5f, 1.2f, 1)));
     builder.light(spot_light({1.5f, 2.6f, 1.5f}, {-1, -2, -1.5f}, Rgb(4, 5, 6), 0.3f, 0.5f));
     builder.light(directional_light({0.3f, -0.6f, -1}, Rgb(0.8f, 0.7f, 0.5f)));

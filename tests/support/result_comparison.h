@@ -82,7 +82,7 @@ class ResultComparison {
                         Value{static_cast<double>(frame.miss.z), 0}};
         } else {
             const Material& material = scene_.materials[scene_.triangles[embree.primitive].material];
-            if (material.transmission > 0) {
+            if (is_pane(material)) {
                 ++tally.behind_panes;
                 return;
             }

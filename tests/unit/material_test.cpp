@@ -229,5 +229,56 @@ TEST(Material, PaneWeighsItsReflectance) {
     EXPECT_EQ(surface_model(test::matte(Rgb(1, 1, 1))).opacity, 1);
 }
 
+TEST(Material, PanesAreSmooth) {
+    Material glass = dielectric(0.5f);
+    EXPECT_GT(surface_model(glass).alpha, 0);
+    glass.transmission = 0.25f;
+    EXPECT_EQ(surface_model(glass).alpha, 0);
+    EXPECT_TRUE(surface_model(glass).has_specular);
+}
+
+// Reflected, passed and diffuse light as scene/material.h adds them up.
+TEST(Material, PaneAndSurfaceShareWhatArrives) {
+    for (const float transmission : {0.1f, 0.5f, 1.0f}) {
+        for (const float metallic : {0.0f, 0.5f, 1.0f}) {
+            Material material = dielectric(0.6f);
+            material.base_color = Rgb(1, 0.5f, 0);
+            material.metallic = metallic;
+            material.transmission = transmission;
+            const SurfaceModel model = surface_model(material);
+            const auto t = static_cast<double>(transmission);
+            for (double mu = 0; mu <= 1; mu += 0.03125) {
+                const AlbedoTerms terms = directional_albedo(mu, static_cast<double>(model.alpha));
+                const double pane = pane_reflectance(mu);
+                for (int c = 0; c < 3; ++c) {
+                    const auto base = static_cast<double>(material.base_color[c]);
+                    const double a = static_cast<double>(model.f0[c]) * terms.a +
+                                     static_cast<double>(model.f90[c]) * terms.b;
+                    const double diffuse = base * static_cast<double>(model.diffuse_scale[c]) * (1 - a);
+                    const double sum = (1 - t) * a + t * pane + t * (1 - pane) * base + diffuse;
+                    EXPECT_LE(sum, 1 + 1e-7);
+                    if (base < 1 || metallic > 0) continue;
+                    EXPECT_NEAR(sum, 1, 1e-7) << mu << " " << transmission << " " << metallic;
+                }
+            }
+        }
+    }
+}
+
+TEST(Material, UnlitSurfaceIsOpaqueAndBlackToOthers) {
+    Material picture = dielectric(0.5f);
+    picture.emission = Rgb(1);
+    picture.transmission = 0.5f;
+    EXPECT_TRUE(is_pane(picture) && is_emissive(picture));
+    picture.unlit = true;
+    EXPECT_FALSE(is_pane(picture) || is_emissive(picture));
+    const SurfaceModel model = surface_model(picture);
+    EXPECT_FALSE(model.has_specular);
+    EXPECT_EQ(model.opacity, 1);
+    EXPECT_EQ(model.diffuse_scale, Rgb(0));
+    EXPECT_EQ(model.mean_scale, Rgb(0));
+    EXPECT_EQ(mean_reflectivity(picture, RgbD(1)), RgbD(0));
+}
+
 }  // namespace
 }  // namespace obscura

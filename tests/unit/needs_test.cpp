@@ -65,10 +65,11 @@ TEST(Needs, RoughLobeNeedsLightSamplesWithoutDirectLight) {
 TEST(Needs, UnlitSurfaceIsSeenButNoLight) {
     Material picture = test::metal(Rgb(1), 0);
     picture.emission = Rgb(1);
+    picture.transmission = 1;
     picture.unlit = true;
     const Needs needs = analyse_needs(scene_of(picture), {});
     EXPECT_TRUE(needs.emission);
-    EXPECT_FALSE(needs.area_lights || needs.mirror || needs.specular_paths);
+    EXPECT_FALSE(needs.area_lights || needs.mirror || needs.transmission || needs.specular_paths);
 }
 
 TEST(Needs, LobesAreToldApart) {
@@ -78,6 +79,14 @@ TEST(Needs, LobesAreToldApart) {
     const Needs mirror = analyse_needs(scene_of(test::metal(Rgb(1), 0.01f)), {});
     EXPECT_TRUE(mirror.mirror && mirror.specular_paths);
     EXPECT_FALSE(mirror.glossy);
+}
+
+TEST(Needs, RoughPaneHasAMirrorLobe) {
+    Material pane = test::metal(Rgb(1), 0.5f);
+    pane.transmission = 0.5f;
+    const Needs needs = analyse_needs(scene_of(pane), {});
+    EXPECT_TRUE(needs.transmission && needs.mirror);
+    EXPECT_FALSE(needs.glossy);
 }
 
 TEST(Needs, SpecularSettingsSwitchPathsOff) {
