@@ -38,7 +38,7 @@ inline float4 trace_obscurance(global const Frame* frame, global const BvhNode* 
             global const SceneMaterial* material = materials + triangle->ids.x;
             const float3 base = base_color(triangle, material, texels, tables, hit.u, hit.v);
             if (bleeding) reflectivity = base * material->mean_scale.xyz;
-            if (NEED_TRANSMISSION && is_pane(material)) {
+            if (NEED_TRANSMISSION && is_pane(material) && segment < MAX_PANES) {
                 const Surface pane = make_surface(triangle, hit.u, hit.v, direction);
                 const float3 passed = pane_transmittance(material, base, -dot(direction, pane.n_geo));
                 blocked = through * (1.0f - passed);

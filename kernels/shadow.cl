@@ -23,7 +23,7 @@ inline float3 transmittance(global const BvhNode* nodes, global const TriangleBl
         if (any_hit || *overflow) return (float3)(0.0f);
         global const SceneTriangle* triangle = triangles + hit.primitive;
         global const SceneMaterial* material = materials + triangle->ids.x;
-        if (!is_pane(material)) return (float3)(0.0f);
+        if (!is_pane(material) || segment == MAX_PANES) return (float3)(0.0f);
         const Surface s = make_surface(triangle, hit.u, hit.v, direction);
         result *= pane_transmittance(material, base_color(triangle, material, texels, tables, hit.u, hit.v),
                                      -dot(unit, s.n_geo));

@@ -6,6 +6,7 @@
 #include "support/kernel_queue.h"
 #include "support/scene_builder.h"
 
+#include <algorithm>
 #include <set>
 
 namespace obscura {
@@ -135,6 +136,53 @@ TEST_F(ObscuranceStage, PanesDimWhatLiesBehind) {
         // The pane reflects nothing diffusely.
         EXPECT_LT((V3d(test::xyz_of(w)) - 0.5 * passed * V3d(REFLECTIVITY)).length(), 2e-3);
         EXPECT_NEAR(static_cast<double>(w.w), 0.25 * (1 - mean_passed) + 0.5 * mean_passed, 2e-3);
+    }
+}
+
+// Up to sixteen panes let pass what lies behind them, the sphere or open space; the next one is a wall.
+TEST_F(ObscuranceStage, SixteenPanesArePassed) {
+    Material clear = test::matte(Rgb(1));
+    clear.transmission = 1;
+    const double passed = 1 - pane_reflectance(1);
+    for (const int count : {15, 16, 17}) {
+        test::SceneBuilder builder = sphere();
+        const uint32_t pane = builder.material(clear);
+        const auto radius = [](int i) { return 0.1f + 0.02f * static_cast<float>(i); };
+        for (int i = 0; i < count; ++i)
+            builder.sphere({0, 0, 0}, radius(i), 3, pane, true);
+        const Scene scene = builder.finish();
+        for (const double d_max : {2.0, 0.5}) {
+            test::StageBench wave = bench(1, d_max, scene);
+            add_point(wave, 0, {0, 0, 0});
+            wave.run_obscurance(0);
+            double w = 0, through = 1;
+            for (int i = 0; i < count; ++i) {
+                const double share = i < 16 ? passed : 0;
+                w += through * (1 - share) * static_cast<double>(radius(i)) / d_max;
+                through *= share;
+            }
+            w += through * std::min(1 / d_max, 1.0);
+            const Rgb behind = d_max > 1 ? REFLECTIVITY / 2.0f : test::xyz_of(wave.frame.miss);
+            for (uint32_t k = 0; k < K; ++k) {
+                EXPECT_NEAR(static_cast<double>(result(wave, 0, k).w), w, 3e-3) << count << " panes";
+                EXPECT_LT((V3d(test::xyz_of(result(wave, 0, k))) - through * V3d(behind)).length(), 3e-3);
+            }
+        }
+    }
+}
+
+TEST_F(ObscuranceStage, UnlitOccludersBleedNoColour) {
+    Material picture = test::matte(REFLECTIVITY);
+    picture.transmission = 0.5f;
+    picture.unlit = true;
+    test::SceneBuilder builder;
+    builder.sphere({0, 0, 0}, 1, 4, builder.material(picture), true);
+    test::StageBench wave = bench(1, 2, builder.finish());
+    add_point(wave, 0, {0, 0, 0});
+    wave.run_obscurance(0);
+    for (uint32_t k = 0; k < K; ++k) {
+        EXPECT_EQ(test::xyz_of(result(wave, 0, k)), V3f(0));
+        EXPECT_NEAR(result(wave, 0, k).w, 0.5f, 1e-3f);
     }
 }
 

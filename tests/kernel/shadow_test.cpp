@@ -5,7 +5,10 @@
 #include "support/kernel_queue.h"
 #include "support/scene_builder.h"
 
+#include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace obscura {
 namespace {
@@ -78,6 +81,41 @@ TEST_F(ShadowStage, ExactlyFullQueueFindsWhatIsBetweenSurfaceAndLight) {
     }
     EXPECT_TRUE(wave.guards_untouched());
     EXPECT_EQ(wave.counters[STATUS_CODE], STATUS_OK);
+}
+
+// A ray passes sixteen panes, and sees what is behind them; the next pane stops it.
+TEST_F(ShadowStage, SixteenPanesArePassed) {
+    Material clear = test::matte(Rgb(1));
+    clear.transmission = 1;
+    for (const uint32_t count : {15U, 16U, 17U}) {
+        test::SceneBuilder builder;
+        const uint32_t pane = builder.material(clear);
+        for (uint32_t i = 0; i < count; ++i)
+            builder.quad({0, 0, -static_cast<float>(i)}, {3, 0, 0}, {0, 1, 0}, pane);
+        // Behind them all stands a wall, for x in [0, 1].
+        builder.quad({0, 0, -20}, {1, 0, 0}, {0, 1, 0}, builder.material(test::matte(Rgb(0.5f))));
+        test::StageBench wave(device(), builder.finish(), {}, 2);
+        const std::vector<std::pair<V3f, float>> lights{
+            {{0, 0, -1}, FAR},    // a sun behind the wall
+            {{0, 0, -19}, 1},     // a lamp before it
+            {{1.5f, 0, -30}, 1},  // a lamp beside it, farther away
+        };
+        for (uint32_t i = 0; i < lights.size(); ++i) {
+            wave.shadow_rays().at(SHADOW_ORIGIN, i) = test::lane_of({0.5f, 0.5f, 1}, test::as_float(i));
+            wave.shadow_rays().at(SHADOW_DIRECTION, i) = test::lane_of(lights[i].first, lights[i].second);
+        }
+        wave.counters[COUNT_SHADOWS] = static_cast<uint32_t>(lights.size());
+        wave.run_shadow();
+        const auto seen = [&](uint32_t i) {
+            return static_cast<double>(wave.visibility().at(i / 2, i % 2).x);
+        };
+        const auto through = [&](double cosine) {
+            return count > 16 ? 0 : std::pow(1 - pane_reflectance(cosine), count);
+        };
+        EXPECT_EQ(seen(0), 0) << count << " panes";
+        EXPECT_NEAR(seen(1), through(1), 1e-5) << count << " panes";
+        EXPECT_NEAR(seen(2), through(30 / std::hypot(30, 1.5)), 1e-5) << count << " panes";
+    }
 }
 
 // Without panes in the scene the kernel is built for any hit: a pane is an obstacle then.
