@@ -118,11 +118,13 @@ class PrimitiveReader {
     std::vector<uint32_t> scene_index_;  // per vertex of the accessor
 };
 
-bool has_area(const Scene& scene, const std::array<uint32_t, 3>& corners) {
-    const V3d a(scene.vertices[corners[0]].position);
-    const V3d cross =
-        (V3d(scene.vertices[corners[1]].position) - a).cross(V3d(scene.vertices[corners[2]].position) - a);
-    return cross.length2() > 0 && std::isfinite(cross.length2());
+bool has_area(const GltfReader& reader, const std::string& place, const std::array<uint32_t, 3>& corners) {
+    const std::vector<Vertex>& vertices = reader.scene.vertices;
+    const float product = edge_product(vertices[corners[0]].position, vertices[corners[1]].position,
+                                       vertices[corners[2]].position);
+    if (!std::isfinite(product))
+        reader.fail(place, "a triangle's sides are so long that their product overflows.");
+    return product >= std::numeric_limits<float>::min();
 }
 
 // Corner k of triangle t in a list, strip or fan (glTF 2.0 specification, 3.7.2.1).
@@ -180,7 +182,7 @@ void append_primitive(GltfReader& reader, const tinygltf::Primitive& primitive, 
             corners[k] = vertices.use_vertex(indices ? indices->index(at) : static_cast<uint32_t>(at));
         }
         if (vertices.mirrored()) std::swap(corners[1], corners[2]);
-        if (has_area(reader.scene, corners))
+        if (has_area(reader, place, corners))
             reader.scene.triangles.push_back({corners, material, object});
         else
             ++reader.scene.dropped_triangles;

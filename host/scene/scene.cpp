@@ -4,6 +4,7 @@
 // stored geometry.
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace obscura {
@@ -36,6 +37,19 @@ V3d geometric_normal(const Scene& scene, uint32_t triangle) {
 
 double triangle_area(const Scene& scene, uint32_t triangle) {
     return 0.5 * edge_cross(scene, triangle).length();
+}
+
+float edge_product(const V3f& a, const V3f& b, const V3f& c) {
+    const V3f e1 = b - a;
+    const V3f e2 = c - a;
+    float largest = 0;
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        const int k = (i + 2) % 3;
+        const float kj = e1[k] * e2[j];
+        largest = std::max(largest, std::abs(std::fma(e1[j], e2[k], -kj) + std::fma(-e1[k], e2[j], kj)));
+    }
+    return largest;
 }
 
 bool is_smooth(const Scene& scene, uint32_t triangle) {

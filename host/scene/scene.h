@@ -86,6 +86,7 @@ struct Camera {
     M44d camera_to_world;       // rigid: looks down -z, +y up; row-vector convention
     double vertical_fov = 0.8;  // perspective: radians, the whole angle
     double half_height = 1;     // orthographic: metres (ymag)
+    double aspect_ratio = 0;    // width / height that the file wishes for; 0 = any
 };
 
 struct Scene {
@@ -109,6 +110,10 @@ struct Scene {
 // Unit normal of the front side; undefined for zero area, which no scene holds.
 V3d geometric_normal(const Scene& scene, uint32_t triangle);
 double triangle_area(const Scene& scene, uint32_t triangle);  // m^2
+
+// Largest component of the cross product of two edges, in the arithmetic with which kernels find the normal
+// (kernels/lib/surface.clh). They need a normal float: less is no area, infinity too much of it.
+float edge_product(const V3f& a, const V3f& b, const V3f& c);
 
 // Whether the triangle is shaded with its vertex normals: all three are there, and one differs from the
 // geometric normal by more than the rounding of exporters (1e-3).

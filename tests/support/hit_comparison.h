@@ -5,10 +5,11 @@
 // The bound. Let M be the largest coordinate difference between the ray's origin and a vertex, u = 2^-24. The
 // shear test rounds p - o once (u M), the shear's slope once or, where division is inexact, by 2.5 ulp (5 u), its
 // product once and the difference once (2 u): each sheared coordinate is off by at most 9 u M, which shifts a
-// projected vertex by 9 sqrt(2) u M < 13 u M. The edge function of two vertices a, b is off by 3 u |a| |b|, that is
-// 3 u |a| |b| / |a - b| < 3 u M as a distance from an edge beside which the ray passes. Together: 16 u M. Along the
-// ray a shift grows with 1 / cos of the angle to the triangle's normal; for slivers no more than that, as long as the
-// distance comes from edge functions that keep their digits.
+// projected vertex by 9 sqrt(2) u M < 13 u M. Whether the ray is inside, plain edge functions decide: that of two
+// vertices a, b is off by 3 u |a| |b|, that is 3 u |a| |b| / |a - b| < 3 u M as a distance from an edge beside which the
+// ray passes. Together: 16 u M. The distance comes from exact edge functions instead: it is that of the shifted corners,
+// so it bears the 13 u M alone, and slivers make it no worse. Along the ray a shift grows with 1 / cos of the angle to
+// the triangle's normal.
 #pragma once
 
 #include "reference/tracer.h"

@@ -219,6 +219,19 @@ TEST(Gltf, OnlyTheDefaultSceneIsLoaded) {
     EXPECT_EQ(scene.objects[0].name, "shown");
 }
 
+// What counts is the product of the edges as the kernels compute it.
+TEST(Gltf, TrianglesCountAsLongAsKernelsFindTheirNormal) {
+    const auto kept = [](const std::vector<float>& positions) {
+        GltfBuilder file;
+        file.append("nodes", {{"mesh", file.mesh({{"POSITION", file.accessor<float>(positions, "VEC3")}})}});
+        return load(file).scene.triangles.size();
+    };
+    // Its products agree in every bit of a float and differ in the next.
+    EXPECT_EQ(kept({0, 0, 0, 0.5118216f, 0.9504637f, 0, 0.22135203f, 0.41105545f, 0}), 1u);
+    EXPECT_EQ(kept({0, 0, 0, 1e-18f, 0, 0, 0, 1e-18f, 0}), 1u);
+    EXPECT_EQ(kept({0, 0, 0, 1e-20f, 0, 0, 0, 1e-20f, 0}), 0u) << "the product is no normal float";
+}
+
 TEST(Gltf, TrianglesWithoutAreaAreDroppedAndCounted) {
     GltfBuilder file;
     const int positions =
