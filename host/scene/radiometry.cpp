@@ -7,6 +7,8 @@
 #include "scene/texture.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace obscura {
@@ -16,10 +18,6 @@ namespace {
 // glTF's soft edge of a spot light is t^2, t = clamp((cos - cos_outer) / ramp, 0, 1). KHR_lights_punctual
 // keeps ramp from vanishing like this.
 constexpr double SMALLEST_SPOT_RAMP = 0.001;
-
-bool emits(const Material& material) {
-    return !material.unlit && (material.emission.x > 0 || material.emission.y > 0 || material.emission.z > 0);
-}
 
 bool emits(const PunctualLight& light) {
     return light.intensity.x > 0 || light.intensity.y > 0 || light.intensity.z > 0;
@@ -63,12 +61,11 @@ Radiometry compute_radiometry(const Scene& scene) {
         const uint32_t index = scene.triangles[i].material;
         const Material& material = scene.materials[index];
         const double area = triangle_area(scene, i) * (material.double_sided ? 2 : 1);
-        const RgbD reflectivity =
-            material.unlit ? RgbD(0, 0, 0) : mean_reflectivity(material, base_colors[i]);
+        const RgbD reflectivity = mean_reflectivity(material, base_colors[i]);
         result.area += area * opacity[index];
         reflecting += area * reflectivity;
         absorbing += area * (RgbD(opacity[index]) - reflectivity);
-        if (emits(material)) result.emitted += area * RgbD(material.emission);
+        if (is_emissive(material)) result.emitted += area * RgbD(material.emission);
     }
     for (const PunctualLight& light : scene.lights)
         result.emitted += emitted_by(scene, light);
@@ -76,19 +73,23 @@ Radiometry compute_radiometry(const Scene& scene) {
 
     result.average_reflectivity = reflecting / result.area;
     for (int c = 0; c < 3; ++c) {
-        if (!(absorbing[c] > 0))
-            throw InputError(
-                "{}: materials: the average reflectivity of the {} channel reaches 1, so light would be "
-                "reflected "
-                "for ever; make the surfaces darker.",
-                scene.name,
-                c == 0   ? "red"
-                : c == 1 ? "green"
-                         : "blue");
-        result.ambient_bleeding[c] = result.emitted[c] / absorbing[c];
+        const double endless = std::numeric_limits<double>::infinity();
+        result.ambient_bleeding[c] = absorbing[c] > 0 ? result.emitted[c] / absorbing[c] : endless;
         result.ambient_colourless[c] = result.average_reflectivity[c] * result.ambient_bleeding[c];
     }
     return result;
+}
+
+void check_ambient(const Scene& scene, const Radiometry& radiometry, const RenderSettings& settings) {
+    if (!settings.obscurance || settings.ambient == Ambient::none || settings.ambient_light) return;
+    constexpr const char* CHANNELS[] = {"red", "green", "blue"};
+    for (int c = 0; c < 3; ++c) {
+        if (std::isinf(radiometry.ambient_bleeding[c]))
+            throw InputError(
+                "{}: materials: the average reflectivity of the {} channel reaches 1, so light would be "
+                "reflected for ever; make the surfaces darker, or set --ambient-light or --ambient none.",
+                scene.name, CHANNELS[c]);
+    }
 }
 
 RgbD resolve_ambient(const Radiometry& radiometry, const RenderSettings& settings) {
@@ -123,8 +124,9 @@ std::vector<RgbD> triangle_base_colors(const Scene& scene) {
 }
 
 bool has_light(const Scene& scene) {
-    return std::any_of(scene.triangles.begin(), scene.triangles.end(),
-                       [&](const Triangle& triangle) { return emits(scene.materials[triangle.material]); }) ||
+    return std::any_of(
+               scene.triangles.begin(), scene.triangles.end(),
+               [&](const Triangle& triangle) { return is_emissive(scene.materials[triangle.material]); }) ||
            std::any_of(scene.lights.begin(), scene.lights.end(),
                        [](const PunctualLight& light) { return emits(light); });
 }

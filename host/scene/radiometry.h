@@ -19,12 +19,15 @@ struct Radiometry {
     double area = 0;                     // A_T, m^2
     RgbD emitted{0, 0, 0};               // W/sr per channel
     RgbD average_reflectivity{0, 0, 0};  // R_ave (4)
-    RgbD ambient_colourless{0, 0, 0};    // I_A (3): with the colourless W, a miss counts 1
-    RgbD ambient_bleeding{0, 0, 0};      // I_A (5): with W of (6), a miss counts R_ave
+    // Infinite where R_ave reaches 1 in a channel: light would be reflected for ever.
+    RgbD ambient_colourless{0, 0, 0};  // I_A (3): with the colourless W, a miss counts 1
+    RgbD ambient_bleeding{0, 0, 0};    // I_A (5): with W of (6), a miss counts R_ave
 };
 
-// Throws InputError if R_ave reaches 1 in a channel, where (3) and (5) have no value.
 Radiometry compute_radiometry(const Scene& scene);
+
+// Throws InputError if the settings ask for an I_A that is infinite.
+void check_ambient(const Scene& scene, const Radiometry& radiometry, const RenderSettings& settings);
 
 // The I_A that the settings ask for: bleeding picks (5) over (3); a constant ambient term has W = 1, so it
 // takes (3) in any case. --ambient-light replaces I_A: it is the radiance at an open point, so divided by

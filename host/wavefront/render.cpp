@@ -111,6 +111,7 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     result.settings = settings;
     result.d_max = resolve_max_distance(settings.d_max, job.scene.bounds);
     result.radiometry = compute_radiometry(job.scene);
+    check_ambient(job.scene, result.radiometry, settings);
     result.needs = analyse_needs(job.scene, settings);
     const LayerPlanes planes = assign_planes(result.needs, wanted_layers(job.layers));
     const PixelRect rect = crop_pixels(settings.crop, settings.width, settings.height);

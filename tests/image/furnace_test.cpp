@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "support/analytic_obscurance.h"
+#include "support/errors.h"
 #include "support/render.h"
 #include "support/scene_builder.h"
 #include "support/sphere_facet.h"
@@ -165,6 +166,20 @@ TEST_F(Furnace, DirectLightIsUniform) {
                   1e-6 * expected);
     }
     table.expect_no_failure();
+}
+
+// Where light is reflected for ever, what needs no ambient light is still known.
+TEST_F(Furnace, WhiteWallsNeedAnAmbientLight) {
+    const Scene scene = furnace_sphere(Rgb(1), EMISSION, RADIUS, LEVELS);
+    RenderSettings settings = furnace_settings(4, 4, 1);
+    EXPECT_INPUT_ERROR(render(scene, settings), "red channel reaches 1");
+    settings.ambient_light = Rgb(0.25f);
+    settings.d_max.value = 1e-5;
+    for (const double value : channel(render(scene, settings, {"ambient"}).image, "ambient", 2))
+        EXPECT_NEAR(value, 0.25, 1e-6);
+    settings.obscurance = false;
+    const std::vector<double> red = channel(render(scene, settings).image, "", 0);
+    EXPECT_NEAR(estimate(red).mean, 2, 0.05) << "emission and its first reflection";
 }
 
 }  // namespace

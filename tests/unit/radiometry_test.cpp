@@ -91,6 +91,7 @@ TEST(Radiometry, DoubleSidedSheetCountsBothSides) {
 TEST(Radiometry, UnlitSurfaceHasAreaOnly) {
     SceneBuilder builder;
     Material picture = matte(Rgb(1, 1, 1), Rgb(9, 9, 9));
+    picture.transmission = 0.5f;  // that of a pane, which an unlit surface isn't
     picture.unlit = true;
     builder.quad(V3f(0, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0), builder.material(picture));
     builder.quad(V3f(0, 0, 1), V3f(1, 0, 0), V3f(0, 1, 0), builder.material(matte(Rgb(0.5f, 0.5f, 0.5f))));
@@ -130,9 +131,29 @@ TEST(Radiometry, NoTrianglesGiveZeros) {
     EXPECT_EQ(result.ambient_bleeding, RgbD(0, 0, 0));
 }
 
-TEST(Radiometry, FullReflectivityIsAnError) {
+TEST(Radiometry, FullReflectivityHasNoFiniteAmbientLight) {
     const Scene scene = test::furnace_sphere(Rgb(0.5f, 1, 0.5f), Rgb(1));
-    EXPECT_INPUT_ERROR(compute_radiometry(scene), "green channel reaches 1");
+    const Radiometry result = compute_radiometry(scene);
+    EXPECT_GT(result.area, 0);
+    EXPECT_NEAR(result.average_reflectivity.y, 1, 1e-12);
+    EXPECT_NEAR(result.ambient_bleeding.x, 2, 1e-12);
+    EXPECT_TRUE(std::isinf(result.ambient_bleeding.y) && std::isinf(result.ambient_colourless.y));
+    EXPECT_INPUT_ERROR(check_ambient(scene, result, {}), "green channel reaches 1");
+    RenderSettings constant;
+    constant.ambient = Ambient::constant;
+    EXPECT_INPUT_ERROR(check_ambient(scene, result, constant), "green channel reaches 1");
+}
+
+TEST(Radiometry, AmbientLightIsCheckedOnlyWhereItIsNeeded) {
+    const Scene scene = test::furnace_sphere(Rgb(0.5f, 1, 0.5f), Rgb(1));
+    const Radiometry radiometry = compute_radiometry(scene);
+    RenderSettings none, without, given;
+    none.ambient = Ambient::none;
+    without.obscurance = false;
+    given.ambient_light = Rgb(1);
+    for (const RenderSettings& settings : {none, without, given})
+        EXPECT_NO_THROW(check_ambient(scene, radiometry, settings));
+    EXPECT_NEAR(resolve_ambient(radiometry, given).y, 1, 1e-12);
 }
 
 TEST(Radiometry, PointLightGivesFourTimesItsIntensity) {
