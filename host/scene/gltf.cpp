@@ -6,13 +6,30 @@
 #include "scene/gltf_reader.h"
 
 #include <algorithm>
+#include <set>
 
 namespace obscura {
 
 namespace {
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
+// Extensions that the file says it uses, and those that it uses without saying so.
+std::set<std::string> used_extensions(const tinygltf::Model& model) {
+    std::set<std::string> names(model.extensionsUsed.begin(), model.extensionsUsed.end());
+    const auto add = [&](const auto& owner) {
+        for (const auto& [name, value] : owner.extensions)
+            names.insert(name);
+    };
+    const auto add_all = [&](const auto& owners) { std::for_each(owners.begin(), owners.end(), add); };
+    add(model);
+    add_all(model.scenes);
+    add_all(model.nodes);
+    add_all(model.materials);
+    add_all(model.textures);
+    for (const tinygltf::Mesh& mesh : model.meshes) {
+        add(mesh);
+        add_all(mesh.primitives);
+    }
+    return names;
 }
 
 void check_extensions(GltfReader& reader) {
@@ -22,8 +39,8 @@ void check_extensions(GltfReader& reader) {
             reader.fail("extensionsRequired", "the file needs the extension {}, which is not supported.",
                         name);
     }
-    for (const std::string& name : model.extensionsUsed) {
-        if (!is_supported_extension(name) && !contains(model.extensionsRequired, name))
+    for (const std::string& name : used_extensions(model)) {
+        if (!is_supported_extension(name))
             log_warning("{}: the extension {} is not supported yet and is ignored.", reader.file, name);
     }
 }

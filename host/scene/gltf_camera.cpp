@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras of nodes, and the camera that frames a scene which has none. Scale and shear of the node are
-// removed, so that camera_to_world is rigid; glTF's aspectRatio, znear and zfar are not used: the picture's
-// size gives the aspect, and rays are not clipped.
+// removed, so that camera_to_world is rigid; glTF's xmag, znear and zfar are not used: the picture's size gives
+// the aspect (a perspective camera's own one is kept, to warn of another), and rays are not clipped.
 #include "scene/gltf_reader.h"
 
 #include <cmath>
@@ -33,10 +33,11 @@ void append_camera(GltfReader& reader, const tinygltf::Node& node, const std::st
     if (source.type == "orthographic") {
         camera.orthographic = true;
         camera.half_height = source.orthographic.ymag;
-        if (!(camera.half_height > 0) || !std::isfinite(camera.half_height))
+        if (!(camera.half_height > 0) || !std::isfinite(static_cast<float>(camera.half_height)))
             reader.fail(place, "ymag must be positive, not {}.", camera.half_height);
     } else {
         camera.vertical_fov = source.perspective.yfov;
+        camera.aspect_ratio = source.perspective.aspectRatio;
         if (!(camera.vertical_fov > 0 && camera.vertical_fov < std::numbers::pi))
             reader.fail(place, "yfov must be between 0 and pi, not {}.", camera.vertical_fov);
     }
@@ -46,7 +47,7 @@ void append_camera(GltfReader& reader, const tinygltf::Node& node, const std::st
     backward.normalize();
     const V3d right = up.cross(backward).normalized();
     const V3d position = to_world.translation();
-    if (!(right.length() > 0.5) || !std::isfinite(position.length()))
+    if (!(right.length() > 0.5) || !std::isfinite(static_cast<float>(position.length())))
         reader.fail(place, "its node's transform leaves it no direction or position.");
     camera.camera_to_world = rigid(right, backward.cross(right), backward, position);
     reader.scene.cameras.push_back(camera);

@@ -57,6 +57,9 @@ void append_light(GltfReader& reader, const tinygltf::Node& node, const std::str
         reader.fail(place, "its range {} must be positive.", source.range);
     light.range = static_cast<float>(source.range);
     light.position = V3f(to_world.translation());
+    if (!std::isfinite(light.position.x) || !std::isfinite(light.position.y) ||
+        !std::isfinite(light.position.z))
+        reader.fail(place, "its node's transform puts it out of reach.");
     V3d direction;
     to_world.multDirMatrix(V3d(0, 0, -1), direction);
     const double length = direction.length();
@@ -71,7 +74,8 @@ void append_light(GltfReader& reader, const tinygltf::Node& node, const std::str
         reader.fail(place, "its type '{}' is not point, spot or directional.", source.type);
     }
     if (light.type != LightType::point) {
-        if (!(length > 0)) reader.fail(place, "its node's transform leaves it no direction.");
+        if (!(length > 0) || !std::isfinite(length))
+            reader.fail(place, "its node's transform leaves it no direction.");
         light.direction = V3f(direction / length);
     }
     reader.scene.lights.push_back(light);

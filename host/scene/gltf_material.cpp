@@ -2,6 +2,7 @@
 // glTF's materials and their extensions as obscura's. What a material asks for and obscura does not render
 // is counted here. Ranges are glTF's own: a factor outside them is an error in the file, not clamped.
 #include "scene/gltf_reader.h"
+#include "scene/material.h"
 
 #include <cmath>
 #include <limits>
@@ -44,8 +45,11 @@ void convert_transmission(GltfReader& reader, const std::string& place, const ti
                                     number_member(reader, place, extension, "transmissionFactor", 0), 1);
     if (extension.Has("transmissionTexture"))
         reader.notices.add("transmission textures are not supported yet and are ignored", "material");
-    if (material.transmission > 0)
-        reader.notices.add("refraction is not supported yet; transmission is rendered as a thin clear pane",
+    if (!is_pane(material)) return;
+    reader.notices.add("refraction is not supported yet; transmission is rendered as a thin clear pane",
+                       "material");
+    if (material.roughness >= MIRROR_ROUGHNESS)
+        reader.notices.add("rough transmission is not supported yet; panes are smooth on both sides",
                            "material");
 }
 

@@ -97,6 +97,10 @@ void append_node(GltfReader& reader, size_t index, const std::string& place, con
 }  // namespace
 
 void append_nodes(GltfReader& reader) {
+    for (size_t i = 1; i < reader.model.scenes.size(); ++i)
+        reader.notices.add("only the default scene is rendered; others are ignored", "other scene");
+    for (size_t i = 0; i < reader.model.animations.size(); ++i)
+        reader.notices.add("animations are not played; nodes keep their place in the file", "animation");
     const auto& nodes = reader.model.nodes;
     std::vector<bool> seen(nodes.size(), false);
     std::vector<Visit> stack;

@@ -84,7 +84,7 @@ UvMapping base_color_mapping(const GltfReader& reader, int material);
 // gltf_texture.cpp: decodes a glTF texture at its first use.
 int32_t use_texture(GltfReader& reader, int texture, const std::string& place);
 // Mean over all texels, each channel in [0, 1]: stands in for textures that are not supported yet.
-V3d mean_texel(const GltfReader& reader, int texture, const std::string& place, bool srgb);
+V3d mean_texel(GltfReader& reader, int texture, const std::string& place, bool srgb);
 
 // gltf_mesh.cpp: adds a mesh as one object, its vertices transformed to world space.
 void append_mesh(GltfReader& reader, int mesh, const M44d& to_world, const std::string& object_name);

@@ -53,7 +53,7 @@ Wrap wrap_mode(const GltfReader& reader, const std::string& place, int mode) {
     }
 }
 
-void set_sampler(const GltfReader& reader, const std::string& place, int index, Texture& texture) {
+void set_sampler(GltfReader& reader, const std::string& place, int index, Texture& texture) {
     if (index < 0) return;  // glTF's default: repeat; the filter is free
     if (static_cast<size_t>(index) >= reader.model.samplers.size())
         reader.fail(place, "sampler {} does not exist; the file has {}.", index,
@@ -63,9 +63,12 @@ void set_sampler(const GltfReader& reader, const std::string& place, int index, 
     texture.wrap_v = wrap_mode(reader, place, sampler.wrapT);
     texture.filter =
         sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST ? TextureFilter::nearest : TextureFilter::linear;
+    const bool mipmaps = sampler.minFilter >= TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST &&
+                         sampler.minFilter <= TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
+    if (mipmaps) reader.notices.add("mipmaps are not used; textures keep their full resolution", "texture");
 }
 
-Texture decode_texture(const GltfReader& reader, int index, const std::string& owner) {
+Texture decode_texture(GltfReader& reader, int index, const std::string& owner) {
     const auto& textures = reader.model.textures;
     if (index < 0 || static_cast<size_t>(index) >= textures.size())
         reader.fail(owner, "texture {} does not exist; the file has {}.", index, textures.size());
@@ -106,7 +109,7 @@ int32_t use_texture(GltfReader& reader, int index, const std::string& owner) {
     return slot;
 }
 
-V3d mean_texel(const GltfReader& reader, int index, const std::string& owner, bool srgb) {
+V3d mean_texel(GltfReader& reader, int index, const std::string& owner, bool srgb) {
     const Texture texture = decode_texture(reader, index, owner);
     V3d sum(0, 0, 0);
     for (size_t i = 0; i < texture.rgba.size(); i += 4) {

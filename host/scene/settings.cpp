@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The distance setting of obscurance rays: text to value, and value to metres in a given scene.
+// The distance setting of obscurance rays: text to value, and value to metres in a given scene. The picture's shape.
 #include "scene/settings.h"
 
 #include "base/error.h"
@@ -16,6 +16,9 @@ namespace {
 // see next to nothing, or nearly all of the scene.
 constexpr double SMALLEST_USUAL_SHARE = 0.005;
 constexpr double LARGEST_USUAL_SHARE = 1;
+
+// A picture is whole pixels wide and high: less than this is no other shape.
+constexpr double ASPECT_TOLERANCE = 0.01;
 
 double diagonal(const Box3f& bounds) {
     return bounds.isEmpty() ? 0 : (V3d(bounds.max) - V3d(bounds.min)).length();
@@ -62,6 +65,15 @@ double resolve_max_distance(const MaxDistance& distance, const Box3f& bounds) {
         log_warning("--dmax {} is {:.3g} % of the scene's diagonal of {:.4g} m; 0.5 % to 100 % is usual.",
                     max_distance_text(distance), 100 * share, size);
     return metres;
+}
+
+void check_aspect(const RenderSettings& settings, double aspect_ratio) {
+    const double aspect = static_cast<double>(settings.width) / settings.height;
+    if (aspect_ratio > 0 && std::abs(aspect / aspect_ratio - 1) > ASPECT_TOLERANCE)
+        log_warning(
+            "the camera was made for pictures of aspect ratio {:.4g}; this one has {:.4g} and shows more or "
+            "less at its sides.",
+            aspect_ratio, aspect);
 }
 
 }  // namespace obscura

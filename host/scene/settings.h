@@ -12,7 +12,7 @@
 
 namespace obscura {
 
-// The falloff rho(t), t = d / d_max in [0, 1). Values are shared with the kernels (shared/falloff.h).
+// The falloff rho(t), t = d / d_max in [0, 1). Values are shared with the kernels (shared/frame.h).
 enum class FalloffKind : uint32_t { step = 0, linear, sqrt, cbrt, exp, expjump, pow };
 
 struct Falloff {
@@ -74,5 +74,7 @@ MaxDistance parse_max_distance(const std::string& text);
 std::string max_distance_text(const MaxDistance& distance);
 // In metres; infinity when unlimited. Warns outside 0.5..100 % of the diagonal.
 double resolve_max_distance(const MaxDistance& distance, const Box3f& bounds);
+// Warns if the picture is wider or higher than the camera was made for; aspect_ratio: width / height, 0 = any.
+void check_aspect(const RenderSettings& settings, double aspect_ratio);
 
 }  // namespace obscura

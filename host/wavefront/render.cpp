@@ -115,7 +115,8 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     result.needs = analyse_needs(job.scene, settings);
     const LayerPlanes planes = assign_planes(result.needs, wanted_layers(job.layers));
     const PixelRect rect = crop_pixels(settings.crop, settings.width, settings.height);
-    select_camera(job.scene, settings);  // an unknown one is an error before any work is done
+    // An unknown camera is an error before any work is done.
+    check_aspect(settings, select_camera(job.scene, settings).aspect_ratio);
 
     // The builder works on one core, the compiler on another.
     std::future<Bvh> building = std::async(std::launch::async, [&] { return build_bvh(job.scene); });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras from files are rigid whatever their node's transform; a scene without one is framed.
 #include "scene/gltf.h"
+#include "scene/settings.h"
 #include "support/errors.h"
 #include "support/gltf_builder.h"
 #include "support/temporary_folder.h"
@@ -76,6 +77,28 @@ TEST(Camera, ScaleShearAndMirroringAreRemoved) {
     V3d forward;
     camera.camera_to_world.multDirMatrix(V3d(0, 0, -1), forward);
     EXPECT_NEAR((forward - V3d(-1, 0, 0)).length(), 0, 1e-12);
+}
+
+TEST(Camera, AnotherShapeOfPictureIsNews) {
+    const test::TemporaryFolder folder;
+    test::GltfBuilder file;
+    file.add_triangle();
+    file.append("cameras", {{"type", "perspective"},
+                            {"perspective", {{"yfov", 0.6}, {"znear", 0.1}, {"aspectRatio", 1.5}}}});
+    file.append("nodes", {{"camera", 0}});
+    const Scene scene = load_gltf(file.write_glb(folder.file("test.glb")));
+    const auto said_of = [&](uint32_t width, uint32_t height) {
+        RenderSettings settings;
+        settings.width = width;
+        settings.height = height;
+        testing::internal::CaptureStderr();
+        check_aspect(settings, scene.cameras.at(0).aspect_ratio);
+        return testing::internal::GetCapturedStderr();
+    };
+    EXPECT_EQ(said_of(300, 200), "");
+    EXPECT_EQ(said_of(301, 200), "");
+    EXPECT_NE(said_of(400, 300).find("made for pictures of aspect ratio 1.5; this one has 1.333"),
+              std::string::npos);
 }
 
 TEST(Camera, MissingOneFramesTheScene) {

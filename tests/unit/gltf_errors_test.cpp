@@ -183,6 +183,34 @@ TEST(GltfErrors, VerticesMustBeFinite) {
     EXPECT_CONTAINS(with_vertices(good, {0, 0, 1, 0, 0, 1}, 1), "NORMAL: it has 2 elements for 3 positions");
 }
 
+TEST(GltfErrors, TrianglesMustNotOverflow) {
+    GltfBuilder file = triangle();
+    file.json["nodes"][0]["scale"] = {1e20, 1e20, 1};
+    EXPECT_CONTAINS(error_of(file), "mesh 'thing' primitive 0: a triangle's sides are so long");
+}
+
+TEST(GltfErrors, LightsAndCamerasMustBeInReach) {
+    const auto at = [](const json& transform) {
+        GltfBuilder light = rich_file();
+        light.json["nodes"][1].erase("camera");
+        light.json["nodes"][1].update(transform);
+        GltfBuilder camera = rich_file();
+        camera.json["nodes"][1].erase("extensions");
+        camera.json["nodes"][1].update(transform);
+        return std::pair(error_of(light), error_of(camera));
+    };
+    const auto [light, camera] = at({{"translation", {0, 1e300, 0}}});
+    EXPECT_CONTAINS(light, "light 0: its node's transform puts it out of reach");
+    EXPECT_CONTAINS(camera, "camera 0: its node's transform leaves it no direction or position");
+    const auto [huge_light, huge_camera] = at({{"scale", {1e300, 1e300, 1e300}}});
+    EXPECT_CONTAINS(huge_light, "light 0: its node's transform leaves it no direction");
+    EXPECT_CONTAINS(huge_camera, "camera 0: its node's transform leaves it no direction or position");
+    GltfBuilder wide = rich_file();
+    wide.json["cameras"][0] = {{"type", "orthographic"},
+                               {"orthographic", {{"xmag", 1}, {"ymag", 1e300}, {"znear", 0}, {"zfar", 1}}}};
+    EXPECT_CONTAINS(error_of(wide), "camera 0: ymag must be positive");
+}
+
 TEST(GltfErrors, IndicesMustBeInRangeAndWhole) {
     const auto with_indices = [](GltfBuilder& file, int indices) {
         const int positions = file.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");

@@ -196,7 +196,7 @@ TEST(GltfMaterial, UnsupportedThingsAreNamedOnceWithACount) {
     for (const char* expected :
          {"normal maps are not supported yet and are ignored (2 materials)",
           "alphaMode BLEND is not supported yet", "occlusion textures are ignored",
-          "rendered as a thin clear pane (2 materials)",
+          "rendered as a thin clear pane (2 materials)", "panes are smooth on both sides (2 materials)",
           "vertex colours are not supported yet and are ignored (2 primitives)",
           "morph targets are not supported", "skins are not supported",
           "points and lines are not rendered (2 primitives)", "indices of refraction",
@@ -204,6 +204,33 @@ TEST(GltfMaterial, UnsupportedThingsAreNamedOnceWithACount) {
         EXPECT_NE(said.find(expected), std::string::npos) << expected << "\nin\n" << said;
     EXPECT_EQ(said.find("KHR_materials_unlit"), std::string::npos);
     EXPECT_EQ(said.find("normal maps"), said.rfind("normal maps"));
+}
+
+TEST(GltfMaterial, WhatElseTheFileHoldsIsNamed) {
+    GltfBuilder file = with_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+                                      {"extensions", {{"KHR_materials_sheen", json::object()}}}});
+    add_image_texture(file, test::PNG_FOUR_COLORS, {{"minFilter", 9987}});
+    file.json["scenes"] = {{{"nodes", {0}}}, {{"nodes", json::array()}}, {{"nodes", json::array()}}};
+    const json sampler = {{"input", 0}, {"output", 0}};
+    const json channel = {{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}};
+    file.json["animations"] = {{{"samplers", {sampler}}, {"channels", {channel}}}};
+    const std::string said = load(file).said;
+    for (const char* expected :
+         {"the extension KHR_materials_sheen is not supported yet",
+          "animations are not played; nodes keep their place in the file (1 animation)",
+          "only the default scene is rendered; others are ignored (2 other scenes)",
+          "mipmaps are not used; textures keep their full resolution (1 texture)"})
+        EXPECT_NE(said.find(expected), std::string::npos) << expected << "\nin\n" << said;
+}
+
+TEST(GltfMaterial, SmoothPanesAndPlainSamplersAreNoNews) {
+    GltfBuilder file = with_material(
+        {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}, {"roughnessFactor", 0}}},
+         {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
+    add_image_texture(file, test::PNG_FOUR_COLORS, {{"minFilter", 9729}});
+    const std::string said = load(file).said;
+    EXPECT_EQ(said.find("smooth"), std::string::npos) << said;
+    EXPECT_EQ(said.find("mipmaps"), std::string::npos) << said;
 }
 
 TEST(GltfMaterial, UnsupportedTexturesStandInWithTheirMean) {
