@@ -8,8 +8,8 @@
 // projected vertex by 9 sqrt(2) u M < 13 u M. Whether the ray is inside, plain edge functions decide: that of two
 // vertices a, b is off by 3 u |a| |b|, that is 3 u |a| |b| / |a - b| < 3 u M as a distance from an edge beside which the
 // ray passes. Together: 16 u M. The distance comes from exact edge functions instead: it is that of the shifted corners,
-// so it bears the 13 u M alone, and slivers make it no worse. Along the ray a shift grows with 1 / cos of the angle to
-// the triangle's normal.
+// so that slivers make it no worse, and its own few roundings are relative to it. Along the ray a shift grows with 1 / cos
+// of the angle to the triangle's normal; 16 u M / cos is taken as the bound of the distance too.
 #pragma once
 
 #include "reference/tracer.h"
