@@ -4,6 +4,7 @@
 #include "device/program_cache.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
@@ -27,6 +28,9 @@ std::filesystem::path default_folder() {
     if (const auto home = variable("HOME"); !home.empty()) return home / ".cache" / "obscura";
     return {};
 }
+
+constexpr std::chrono::days KEPT_UNUSED{30};
+constexpr const char* ENTRY_EXTENSION = ".program";
 
 std::string entry_header(const std::string& key, std::string_view program) {
     return fmt::format("obscura program 1 {} {:016x} {}\n", key, program.size(), hash_text(program));
@@ -55,7 +59,7 @@ ProgramCache::ProgramCache() : ProgramCache(default_folder()) {}
 ProgramCache::ProgramCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
 std::filesystem::path ProgramCache::entry_path(const std::string& key) const {
-    return folder_ / (key + ".program");
+    return folder_ / (key + ENTRY_EXTENSION);
 }
 
 std::optional<std::vector<unsigned char>> ProgramCache::load(const std::string& key) const {
@@ -68,6 +72,8 @@ std::optional<std::vector<unsigned char>> ProgramCache::load(const std::string& 
     const std::string_view text = as_text(bytes);
     if (text.substr(0, header_size) != entry_header(key, text.substr(header_size))) return std::nullopt;
     bytes.erase(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(header_size));
+    std::error_code ignored;  // a folder that can be read only keeps its times
+    std::filesystem::last_write_time(entry_path(key), std::filesystem::file_time_type::clock::now(), ignored);
     return bytes;
 }
 
@@ -76,9 +82,23 @@ void ProgramCache::store(const std::string& key, std::span<const unsigned char> 
         if (folder_.empty()) throw InputError("none of OBSCURA_CACHE_DIR, XDG_CACHE_HOME and HOME is set");
         std::filesystem::create_directories(folder_);
         write_text(entry_path(key), entry_header(key, as_text(program)).append(as_text(program)));
+        remove_unused();
     } catch (const std::exception& error) {  // no permission, disk full, ...: only speed is lost
         if (!warned_) log_warning("Compiled kernels can't be kept for the next start: {}", error.what());
         warned_ = true;
+    }
+}
+
+// Failures are left alone: another process may be cleaning up too, and an old file costs only its space.
+void ProgramCache::remove_unused() const {
+    namespace fs = std::filesystem;
+    const auto oldest = fs::file_time_type::clock::now() - KEPT_UNUSED;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
+        if (entry->path().extension() != ENTRY_EXTENSION) continue;
+        std::error_code ignored;
+        const fs::file_time_type used = entry->last_write_time(ignored);
+        if (!ignored && used < oldest) fs::remove(entry->path(), ignored);
     }
 }
 

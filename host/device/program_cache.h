@@ -25,12 +25,15 @@ class ProgramCache {
     const std::filesystem::path& folder() const { return folder_; }
     std::filesystem::path entry_path(const std::string& key) const;
 
-    // The program stored under key, if there is one and it is whole.
+    // The program stored under key, if there is one and it is whole. Its file's time becomes that of its last use.
     std::optional<std::vector<unsigned char>> load(const std::string& key) const;
-    // Replaces the entry atomically, so that several processes can share the folder.
+    // Replaces the entry atomically, so that several processes can share the folder; removes entries that were not used for
+    // 30 days, which no driver or version in use asks for.
     void store(const std::string& key, std::span<const unsigned char> program);
 
   private:
+    void remove_unused() const;
+
     std::filesystem::path folder_;
     bool warned_ = false;
 };
