@@ -60,7 +60,10 @@ std::vector<int> matches(std::span<const DeviceInfo> devices, std::string_view s
             });
     }
     return positions_where(devices, [&](const DeviceInfo& info) {
-        return contains_ignoring_case(info.name, selector) || contains_ignoring_case(info.platform, selector);
+        // PoCL's platform calls itself "Portable Computing Language"; "PoCL" stands in its version.
+        return contains_ignoring_case(info.name, selector) ||
+               contains_ignoring_case(info.platform, selector) ||
+               contains_ignoring_case(info.platform_version, selector);
     });
 }
 

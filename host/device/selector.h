@@ -36,7 +36,7 @@ std::vector<DeviceInfo> list_devices();
 int default_device(std::span<const DeviceInfo> devices);
 
 // Position in devices of the one meant by the selector: empty (the default), an index, "platform:device"
-// indices, or a part of the device's or platform's name in any case. Throws InputError that lists the
+// indices, or a part of the device's name or the platform's name or version in any case. Throws InputError that lists the
 // candidates if none or several match or the match is not usable; DeviceError with the reasons if no device
 // is usable at all.
 int select_device(std::span<const DeviceInfo> devices, std::string_view selector);

@@ -40,6 +40,7 @@ std::vector<DeviceInfo> sample_devices() {
         unusable(device(3, 3, 0, "Old CL", "Accelerator 1"), "the driver has no compiler for kernels"),
     };
     devices[3].is_cpu = true;
+    devices[3].platform_version = "OpenCL 3.0 PoCL 6.0  Linux, Release";
     return devices;
 }
 
@@ -77,6 +78,7 @@ TEST(DeviceSelector, PlatformAndDeviceIndexGiveThatDevice) {
 TEST(DeviceSelector, PartOfNameInAnyCaseGivesTheDevice) {
     EXPECT_EQ(select_device(sample_devices(), "MINI"), 1);
     EXPECT_EQ(select_device(sample_devices(), "portable computing"), 3);
+    EXPECT_EQ(select_device(sample_devices(), "pocl"), 3);  // in the platform's version only
 }
 
 TEST(DeviceSelector, SeveralMatchesListTheCandidates) {
