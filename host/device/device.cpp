@@ -45,10 +45,6 @@ Device::Device(cl::Device handle, DeviceInfo info) : handle_(std::move(handle)),
     compiles_at_launch_ = info_.platform == POCL_PLATFORM_NAME;
 }
 
-void Device::flush(std::string_view stage) const {
-    check(queue_.flush(), "clFlush", stage, info_.name);
-}
-
 void Device::finish(std::string_view stage) const {
     check(queue_.finish(), "clFinish", stage, info_.name);
 }

@@ -35,8 +35,6 @@ class Device {
     MemoryLedger& memory() { return memory_; }
     const MemoryLedger& memory() const { return memory_; }
 
-    // Submits what is enqueued, without waiting.
-    void flush(std::string_view stage) const;
     // Waits until everything enqueued is done. stage names the work in an error message.
     void finish(std::string_view stage) const;
 

@@ -133,13 +133,13 @@ ProgramLibrary::Source ProgramLibrary::make_source(const std::string& stage, con
                                                    const std::string& kernel,
                                                    const std::string& options) const {
     refuse_inexact_arithmetic(options);
-    std::string all = fmt::format("-cl-std=CL1.2 -cl-kernel-arg-info -D LOCAL_SIZE={}", local_size_);
+    std::string all = "-cl-std=CL1.2 -cl-kernel-arg-info";
     if (device_.has_correctly_rounded_division()) all += " -cl-fp32-correctly-rounded-divide-sqrt";
     if (!options.empty()) all += " " + options;
     const DeviceInfo& info = device_.info();
-    const std::string key =
-        hash_text(fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", info.platform, info.platform_version,
-                              info.name, info.driver_version, info.opencl_version, kernel, all, text));
+    const std::string key = hash_text(fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", info.platform,
+                                                  info.platform_version, info.name, info.driver_version,
+                                                  info.opencl_version, kernel, local_size_, all, text));
     return {.stage = stage, .text = text, .options = all, .kernel = kernel, .key = key};
 }
 

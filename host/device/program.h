@@ -27,7 +27,8 @@ struct KernelRequest {
 
 class ProgramLibrary {
   public:
-    // local_size: of the work groups that the kernels will be launched with; they see it as LOCAL_SIZE.
+    // local_size: of the work groups that the kernels will be launched with. A cached program of PoCL holds machine code
+    // for one.
     explicit ProgramLibrary(Device& device, uint32_t local_size = 64);
 
     // Builds what is missing of the requests, and says "compiling kernel k of n" for each that is not in the
