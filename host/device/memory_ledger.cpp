@@ -25,6 +25,12 @@ void MemoryLedger::remove(std::string_view category, uint64_t bytes) {
     found->second.current -= bytes;
 }
 
+void MemoryLedger::reset_peaks() {
+    total_.peak = total_.current;
+    for (auto& [category, account] : categories_)
+        account.peak = account.current;
+}
+
 uint64_t MemoryLedger::current_bytes(std::string_view category) const {
     const auto found = categories_.find(category);
     return found != categories_.end() ? found->second.current : 0;

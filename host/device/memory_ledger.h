@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts the bytes of device memory by category ("scene", "bvh", "queues", "film", "status"): now and at
-// most.
+// most (since the last reset).
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,9 @@ class MemoryLedger {
   public:
     void add(std::string_view category, uint64_t bytes);
     void remove(std::string_view category, uint64_t bytes);
+
+    // From now on peaks are those of what follows.
+    void reset_peaks();
 
     uint64_t current_bytes() const { return total_.current; }
     uint64_t peak_bytes() const { return total_.peak; }

@@ -105,6 +105,9 @@ TEST_F(MemoryLedgerOfDevice, CountsByCategoryNowAndAtMost) {
     EXPECT_EQ(own.memory().peak_bytes(), 1600u);
     EXPECT_EQ(own.memory().peak_bytes("queues"), 600u);
     EXPECT_EQ(own.memory().peak_bytes("film"), 0u);
+    own.memory().reset_peaks();
+    EXPECT_EQ(own.memory().peak_bytes(), 0u);
+    EXPECT_EQ(own.memory().peak_bytes("queues"), 0u);
 }
 
 struct Pair {
