@@ -13,6 +13,7 @@
 #include "support/rays.h"
 #include "support/result_comparison.h"
 #include "support/scene_builder.h"
+#include "support/temporary_folder.h"
 #include "wavefront/render.h"
 
 #include <fmt/format.h>

@@ -11,6 +11,7 @@
 #include "device/kernel_source.h"
 #include "device/launch.h"
 #include "support/device.h"
+#include "support/temporary_folder.h"
 
 namespace obscura {
 namespace {

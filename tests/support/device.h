@@ -7,7 +7,6 @@
 #include <stdlib.h>
 
 #include <cstdlib>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -57,28 +56,6 @@ class ScopedVariable {
   private:
     std::string name_;
     std::optional<std::string> before_;
-};
-
-// An empty folder of its own that is removed with all it holds.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::string path = (std::filesystem::temp_directory_path() / "obscura-test-XXXXXX").string();
-        if (mkdtemp(path.data()) == nullptr)
-            throw std::filesystem::filesystem_error("mkdtemp", path, {errno, std::generic_category()});
-        path_ = path;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    const std::filesystem::path& path() const { return path_; }
-
-  private:
-    std::filesystem::path path_;
 };
 
 }  // namespace obscura::test
