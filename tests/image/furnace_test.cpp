@@ -45,7 +45,8 @@ Point facet_point(const Rgb& reflectivity) {
     return {std::move(scene), facet};
 }
 
-TEST_F(Furnace, RadiometryIsExact) {
+// Needs no device.
+TEST(FurnaceRadiometry, EqualsItsClosedForm) {
     for (const Rgb& reflectivity : REFLECTIVITIES) {
         const Radiometry radiometry =
             compute_radiometry(furnace_sphere(reflectivity, EMISSION, RADIUS, LEVELS));
