@@ -6,6 +6,9 @@
 
 namespace obscura {
 
+// Points of a pixel's whole set, at most: indices have 32 bits, and squares of distances must fit into 64.
+inline constexpr uint64_t MAX_SET_POINTS = uint64_t{1} << 31;
+
 // The generator g for `total` points of which every subset j = s, s + stride, s + 2 stride ... is used by one camera
 // sample: the g whose full lattice and whose subsets both have the longest shortest vector (spectral
 // test). 40 points in subsets of 5 give 7.

@@ -18,13 +18,18 @@ f32x4 lane(const V3d& v, float w = 0) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), w};
 }
 
+// Half of what the picture shows from top to bottom: metres, or the tangent of the angle.
+double half_height_of(const Camera& camera) {
+    return camera.orthographic ? camera.half_height : std::tan(camera.vertical_fov / 2);
+}
+
 void set_camera(Frame& frame, const Camera& camera, const RenderSettings& settings) {
     const M44d& m = camera.camera_to_world;
     const V3d right(m[0][0], m[0][1], m[0][2]);
     const V3d up(m[1][0], m[1][1], m[1][2]);
     const V3d back(m[2][0], m[2][1], m[2][2]);
     const V3d origin(m[3][0], m[3][1], m[3][2]);
-    const double half_height = camera.orthographic ? camera.half_height : std::tan(camera.vertical_fov / 2);
+    const double half_height = half_height_of(camera);
     const double half_width = half_height * settings.width / settings.height;
     frame.camera_origin =
         lane(origin, std::bit_cast<float>(camera.orthographic ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE));
@@ -90,15 +95,27 @@ const Camera& select_camera(const Scene& scene, const RenderSettings& settings) 
     throw InputError("{}: there is no camera '{}'; the scene has {}", scene.name, settings.camera, names);
 }
 
+M44d world_to_ndc(const Camera& camera, uint32_t width, uint32_t height) {
+    const double half_height = half_height_of(camera);
+    const double half_width = half_height * width / height;
+    const double sx = 0.5 / half_width, sy = -0.5 / half_height;  // y points down
+    // The camera looks along -z. Perspective divides by the depth w = -z; 1 / depth keeps the matrix invertible.
+    const M44d to_ndc = camera.orthographic ? M44d(sx, 0, 0, 0, 0, sy, 0, 0, 0, 0, 1, 0, 0.5, 0.5, 0, 1)
+                                            : M44d(sx, 0, 0, 0, 0, sy, 0, 0, -0.5, -0.5, 0, -1, 0, 0, 1, 0);
+    return camera.camera_to_world.inverse() * to_ndc;
+}
+
 Frame make_frame(const FrameInput& input, const PixelRect& rect, uint32_t capacity) {
     const RenderSettings& settings = input.settings;
     const uint32_t spp = settings.spp;
     const uint32_t k_count = settings.obscurance_rays;
     const uint32_t l_count = settings.light_samples;
+    OBSCURA_CHECK(uint64_t{spp} * std::max(k_count, l_count) <= MAX_SET_POINTS,
+                  "{} samples x {} or {} points", spp, k_count, l_count);
     Frame frame{};
     set_camera(frame, select_camera(input.scene, settings), settings);
     frame.image = {settings.width, settings.height, rect.x0, rect.y0};
-    frame.crop = {rect.width(), rect.height(), rect.pixel_count(), capacity};
+    frame.crop = {rect.width(), rect.height(), static_cast<uint32_t>(rect.pixel_count()), capacity};
     frame.sampling = {spp, k_count, l_count, static_cast<uint32_t>(settings.sampler)};
     frame.seed = {fold_seed(settings.seed), static_cast<uint32_t>(std::bit_width(spp - 1)),
                   settings.max_depth, frame_flags(settings)};

@@ -25,6 +25,10 @@ uint32_t plane_count(const LayerPlanes& planes);
 // The camera that the settings name: by name, by index, or the first. Throws InputError that lists them.
 const Camera& select_camera(const Scene& scene, const RenderSettings& settings);
 
+// World space to the picture's plane, as OpenEXR defines worldToNDC: (0, 0) is the upper left corner of the full picture,
+// (1, 1) the lower right. For row vectors, as all of Imath; z grows towards the camera.
+M44d world_to_ndc(const Camera& camera, uint32_t width, uint32_t height);
+
 struct FrameInput {
     const Scene& scene;
     const RenderSettings& settings;  // sampler resolved

@@ -14,7 +14,7 @@ namespace {
 constexpr uint64_t LANE_BYTES = sizeof(f32x4);
 // Below this a wave is all launch overhead.
 constexpr uint64_t MIN_WAVE = 64;
-// Result indices are 32 bits wide.
+// Indices of results and pixels are 32 bits wide.
 constexpr uint64_t MAX_INDEX = 0x7fffffff;
 
 uint64_t path_lanes(const QueueShape& shape) {
@@ -76,8 +76,9 @@ Wave wave_at(uint64_t index, uint32_t capacity, uint32_t pixel_count, uint32_t s
 
 std::vector<PixelRect> film_bands(const PixelRect& rect, uint32_t layer_planes, uint64_t max_film_bytes) {
     const uint64_t row_bytes = uint64_t{rect.width()} * layer_planes * LANE_BYTES;
-    const auto rows = static_cast<uint32_t>(
-        std::clamp<uint64_t>(max_film_bytes / std::max<uint64_t>(row_bytes, 1), 1, rect.height()));
+    const uint64_t fits =
+        std::min(max_film_bytes / std::max<uint64_t>(row_bytes, 1), MAX_INDEX / rect.width());
+    const auto rows = static_cast<uint32_t>(std::clamp<uint64_t>(fits, 1, rect.height()));
     std::vector<PixelRect> bands;
     for (uint32_t y = rect.y0; y < rect.y1; y += rows) {
         bands.push_back({rect.x0, y, rect.x1, std::min(y + rows, rect.y1)});

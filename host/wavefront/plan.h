@@ -15,7 +15,7 @@ struct PixelRect {
     uint32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     uint32_t width() const { return x1 - x0; }
     uint32_t height() const { return y1 - y0; }
-    uint32_t pixel_count() const { return width() * height(); }
+    uint64_t pixel_count() const { return uint64_t{width()} * height(); }
 };
 
 // Throws InputError if the window holds no pixel.
@@ -49,7 +49,8 @@ struct Wave {
 // Wave number `index` of the run; count 0 past the end.
 Wave wave_at(uint64_t index, uint32_t capacity, uint32_t pixel_count, uint32_t spp);
 
-// Horizontal bands of rect whose film fits into max_film_bytes; one band in nearly every render.
+// Horizontal bands of rect whose film fits into max_film_bytes and whose pixels 31 bits count; one band in nearly every
+// render.
 std::vector<PixelRect> film_bands(const PixelRect& rect, uint32_t layer_planes, uint64_t max_film_bytes);
 
 }  // namespace obscura

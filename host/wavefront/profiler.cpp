@@ -22,9 +22,9 @@ void Profiler::collect() {
     for (const Pending& launch : pending_) {
         cl_ulong start = 0, end = 0;
         check(launch.event.getProfilingInfo(CL_PROFILING_COMMAND_START, &start), "clGetEventProfilingInfo",
-              launch.row);
+              launch.row, device_name_);
         check(launch.event.getProfilingInfo(CL_PROFILING_COMMAND_END, &end), "clGetEventProfilingInfo",
-              launch.row);
+              launch.row, device_name_);
         StageProfile& row = rows_[launch.row];
         ++row.launches;
         row.items += launch.items;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace obscura {
@@ -19,6 +20,9 @@ struct StageProfile {
 
 class Profiler {
   public:
+    // device_name: for error messages.
+    explicit Profiler(std::string device_name) : device_name_(std::move(device_name)) {}
+
     // row: "trace_camera", "shade" ...; items: work of the launch as its stage counts it.
     void record(const std::string& row, uint64_t items, const cl::Event& event);
     // Replaces the item count of the row's latest launch, once the device has told it.
@@ -34,6 +38,7 @@ class Profiler {
         uint64_t items;
         cl::Event event;
     };
+    std::string device_name_;
     std::vector<Pending> pending_;
     std::map<std::string, StageProfile> rows_;
 };

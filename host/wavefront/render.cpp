@@ -8,9 +8,9 @@
 
 #include "base/error.h"
 #include "bvh/bvh.h"
-#include "film/attributes.h"
 #include "film/develop.h"
 #include "sampling/sample_order.h"
+#include "wavefront/describe.h"
 #include "wavefront/features.h"
 #include "wavefront/frame.h"
 
@@ -70,28 +70,6 @@ void place_image(Image& image, const RenderSettings& settings, const PixelRect& 
     image.y1 = static_cast<int32_t>(rect.y1);
 }
 
-void describe(const RenderJob& job, const RenderSettings& settings, const Device& device,
-              RenderResult& result) {
-    const Radiometry& radiometry = result.radiometry;
-    auto& attributes = result.image.attributes;
-    attributes["software"] = std::string("obscura " OBSCURA_VERSION);
-    attributes["scene"] = job.scene.name;
-    attributes["camera"] = select_camera(job.scene, settings).name;
-    attributes[attribute::WORLD_TO_CAMERA] = select_camera(job.scene, settings).camera_to_world.inverse();
-    attributes["averageReflectivity"] = radiometry.average_reflectivity;
-    attributes["ambientIntensity"] = resolve_ambient(radiometry, settings);
-    attributes["falloff"] = falloff_text(settings.falloff);
-    attributes["maxDistance"] = result.d_max;
-    attributes[attribute::SPP] = int64_t{settings.spp};
-    attributes["obscuranceRays"] = int64_t{settings.obscurance_rays};
-    attributes[attribute::SEED] = static_cast<int64_t>(settings.seed);
-    attributes["sampler"] = std::string(sampler_name(settings.sampler));
-    attributes["bleeding"] = std::string(settings.bleeding ? "on" : "off");
-    attributes[attribute::DEVICE] = device.name();
-    attributes[attribute::SECONDS] = result.seconds.render;
-    attributes["complete"] = std::string(result.complete ? "yes" : "no");
-}
-
 std::map<std::string, uint64_t> peak_bytes(const Device& device) {
     std::map<std::string, uint64_t> bytes;
     for (const char* category : {"scene", "bvh", "queues", "film"}) {
@@ -105,6 +83,7 @@ std::map<std::string, uint64_t> peak_bytes(const Device& device) {
 
 RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJob& job,
                           const RenderCallback& after_wave) {
+    device.memory().reset_peaks();
     RenderResult result;
     RenderSettings settings = with_default_sky(job.scene, job.settings);
     settings.sampler = resolve_sampler(settings);
@@ -132,15 +111,16 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     const uint64_t max_allocation = device.info().max_allocation_bytes;
     const QueueShape shape = queue_shape(result.needs, settings, planes);
     const std::vector<PixelRect> bands = film_bands(rect, shape.layer_planes, max_allocation);
-    const uint64_t sample_count = uint64_t{bands.front().pixel_count()} * settings.spp;
+    const uint64_t sample_count = bands.front().pixel_count() * settings.spp;
     result.wave_capacity = wave_capacity(shape, job.wave_size, job.queue_bytes, max_allocation, sample_count);
-    Queues queues = allocate_queues(device, shape, result.wave_capacity, bands.front().pixel_count(),
-                                    bit_reversed_order(settings.spp));
+    const auto largest_band = static_cast<uint32_t>(bands.front().pixel_count());
+    Queues queues =
+        allocate_queues(device, shape, result.wave_capacity, largest_band, bit_reversed_order(settings.spp));
     result.seconds.upload = upload_watch.seconds();
 
     place_image(result.image, settings, rect);
     const Stopwatch render_watch;
-    Profiler profiler;
+    Profiler profiler(device.name());
     Scheduler scheduler(device, kernels, scene, queues, library.local_size(), profiler);
     scheduler.observe(job.observer);
     const FrameInput input{job.scene,
@@ -151,12 +131,13 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
                            static_cast<uint32_t>(arrays.area_lights.size()),
                            static_cast<uint32_t>(arrays.point_lights.size()),
                            result.d_max};
+    const uint64_t all = rect.pixel_count() * settings.spp;
     uint64_t samples_before = 0;
+    result.samples_per_pixel = settings.spp;
     result.complete = after_wave(0, {});
     for (const PixelRect& band : bands) {
-        const uint64_t band_samples = uint64_t{band.pixel_count()} * settings.spp;
+        const uint64_t band_samples = band.pixel_count() * settings.spp;
         const auto report = [&](uint64_t done, const RayCounts& rays) {
-            const uint64_t all = uint64_t{rect.pixel_count()} * settings.spp;
             const uint64_t finished = samples_before + done;
             return after_wave(static_cast<double>(finished) / static_cast<double>(all), rays) ||
                    finished == all;
@@ -165,17 +146,18 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
         // Once stopped, the remaining bands stay black.
         const uint64_t done = result.complete ? scheduler.render(frame, report) : 0;
         result.complete = result.complete && done == band_samples;
-        std::vector<f32x4> sums(size_t{band.pixel_count()} * shape.layer_planes);
+        const uint64_t passes = done / band.pixel_count();
+        result.samples_per_pixel = std::min(result.samples_per_pixel, static_cast<uint32_t>(passes));
+        std::vector<f32x4> sums(band.pixel_count() * shape.layer_planes);
         if (done > 0) queues.film.download(sums);
-        develop_band({planes, sums, done / band.pixel_count(), done % band.pixel_count()}, job.layers,
-                     result.image);
+        develop_band({planes, sums, passes, done % band.pixel_count()}, job.layers, result.image);
         samples_before += band_samples;
     }
     result.seconds.render = render_watch.seconds();
     result.rays = scheduler.rays();
     result.profile = profiler.rows();
     result.bytes = peak_bytes(device);
-    describe(job, settings, device, result);
+    describe(job, device.name(), result);
     return result;
 }
 

@@ -49,8 +49,10 @@ struct RenderResult {
     RenderSettings settings;  // with the sampler and the sky that were chosen
     double d_max = 0;         // m
     uint32_t wave_capacity = 0;
-    bool complete = true;                   // false: stopped early, pixels have fewer samples
-    std::map<std::string, uint64_t> bytes;  // device memory at its peak: scene bvh queues film peak_device
+    bool complete = true;            // false: stopped early, pixels have fewer samples
+    uint32_t samples_per_pixel = 0;  // that every pixel has; some may have one more
+    std::map<std::string, uint64_t>
+        bytes;  // device memory at its peak during the render: scene bvh queues film peak_device
 };
 
 // fraction: of the samples done, 0 before the first wave; false stops the render there.

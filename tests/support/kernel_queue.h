@@ -130,7 +130,7 @@ class StageBench {
               {"visibility", light_samples, capacity},
               {"points", uint32_t{POINT_LANES}, capacity},
               {"results", 1u, capacity * k_count},
-              {"film", plane_count_, rect.pixel_count()}}) {
+              {"film", plane_count_, static_cast<uint32_t>(rect.pixel_count())}}) {
             queues_.emplace_back(device, name, lanes, items);
         }
     }

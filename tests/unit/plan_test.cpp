@@ -81,11 +81,22 @@ TEST(Plan, FilmBandsCoverTheRectangleWithinTheLimit) {
         for (const PixelRect& band : film_bands(rect, 7, limit)) {
             EXPECT_EQ(band.y0, y);
             EXPECT_EQ(band.width(), rect.width());
-            EXPECT_TRUE(band.height() == 1 || uint64_t{band.pixel_count()} * 7 * 16 <= limit);
+            EXPECT_TRUE(band.height() == 1 || band.pixel_count() * 7 * 16 <= limit);
             y = band.y1;
         }
         EXPECT_EQ(y, rect.y1);
     }
+}
+
+TEST(Plan, BandsOfTheLargestPictureHaveCountablePixels) {
+    const PixelRect rect = crop_pixels({}, 65536, 65536);
+    EXPECT_EQ(rect.pixel_count(), uint64_t{1} << 32);
+    uint64_t pixels = 0;
+    for (const PixelRect& band : film_bands(rect, 1, uint64_t{1} << 50)) {
+        EXPECT_LT(band.pixel_count(), uint64_t{1} << 31);
+        pixels += band.pixel_count();
+    }
+    EXPECT_EQ(pixels, rect.pixel_count());
 }
 
 }  // namespace
