@@ -8,14 +8,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "base/file.h"
 #include "base/log.h"
+#include "cli/json_output.h"
+#include "cli/number_range.h"
+#include "cli/output_paths.h"
 #include "film/attributes.h"
 #include "film/image.h"
 #include "film/metrics.h"
@@ -26,10 +28,12 @@ namespace {
 const std::map<std::string, Metric> METRICS = {
     {"rmse", Metric::rmse}, {"relmse", Metric::relmse}, {"mape", Metric::mape}, {"max_abs", Metric::max_abs}};
 
+constexpr const char* ALL_LAYERS = "all";
+
 struct CompareOptions {
     std::string image;
     std::string reference;
-    std::string layer = "all";
+    std::string layer = ALL_LAYERS;
     std::string metric = "rmse";
     double bound = 0;
     std::string heat_map;
@@ -40,6 +44,7 @@ struct CompareOptions {
 struct Verdict {
     ImageDifference difference;
     size_t headline = 0;  // the layer whose numbers stand for the image: the chosen one, beauty, or the first
+    bool same_channels = true;
     bool identical = true;
     bool within_bound = true;
 };
@@ -93,6 +98,11 @@ Verdict judge(const CompareOptions& options, const Image& image, const Image& re
     if (layers.empty()) {
         throw InputError("{}: it has no channel in common with {}", options.image, options.reference);
     }
+    verdict.same_channels =
+        verdict.difference.only_in_image.empty() && verdict.difference.only_in_reference.empty();
+    verdict.identical = verdict.same_channels;
+    // What only one has is beyond any bound, unless a layer was chosen: then what both have of it counts.
+    verdict.within_bound = verdict.same_channels || (options.layer != ALL_LAYERS && options.bound > 0);
     const Metric metric = METRICS.at(options.metric);
     for (size_t i = 0; i < layers.size(); ++i) {
         if (layers[i].title == "beauty") verdict.headline = i;
@@ -102,16 +112,16 @@ Verdict judge(const CompareOptions& options, const Image& image, const Image& re
     return verdict;
 }
 
-nlohmann::ordered_json numbers(const LayerDifference& layer) {
+Json numbers(const LayerDifference& layer) {
     return {{"identical", layer.identical}, {"max_abs", layer.max_abs},
             {"rmse", layer.rmse},           {"relmse", layer.relmse},
             {"mape", layer.mape},           {"mse", layer.mse},
             {"values", layer.value_count},  {"not_finite", layer.not_finite_count}};
 }
 
-void write_json(const CompareOptions& options, const Verdict& verdict) {
+Json to_json(const CompareOptions& options, const Verdict& verdict) {
     const auto& layers = verdict.difference.layers;
-    nlohmann::ordered_json json = numbers(layers[verdict.headline]);
+    Json json = numbers(layers[verdict.headline]);
     json["identical"] = verdict.identical;
     json["layer"] = layers[verdict.headline].title;
     json["metric"] = options.metric;
@@ -121,16 +131,13 @@ void write_json(const CompareOptions& options, const Verdict& verdict) {
         json["layers"][layer.title] = numbers(layer);
     json["only_in_image"] = verdict.difference.only_in_image;
     json["only_in_reference"] = verdict.difference.only_in_reference;
-    const std::string text = json.dump(2) + "\n";
-    if (options.json == "-") {
-        fmt::print("{}", text);
-    } else {
-        write_text(options.json, text);
-    }
+    return json;
 }
 
 std::string conclusion(const CompareOptions& options, const Verdict& verdict) {
     if (verdict.identical) return "The images are bit-identical.";
+    if (!verdict.same_channels && !verdict.within_bound)
+        return "The images differ: they have different channels.";
     if (options.bound == 0) return "The images differ.";
     return fmt::format("The images differ, {} the bound: {} at most {} in every layer.",
                        verdict.within_bound ? "within" : "beyond", options.metric, options.bound);
@@ -152,11 +159,12 @@ void print_table(const CompareOptions& options, const Verdict& verdict) {
 }
 
 ExitCode run_compare(const CompareOptions& options) {
-    if (!(options.bound >= 0)) throw InputError("--bound: it must be 0 or more, and is {}", options.bound);
+    check_outputs({{"--heatmap", options.heat_map}, {"--json", options.json}},
+                  {options.image, options.reference});
     Image image = read_exr(options.image);
     Image reference = read_exr(options.reference);
     check_comparable(options, image, reference);
-    if (options.layer != "all") {
+    if (options.layer != ALL_LAYERS) {
         keep_layer(image, options.layer, options.image);
         keep_layer(reference, options.layer, options.reference);
     }
@@ -168,7 +176,7 @@ ExitCode run_compare(const CompareOptions& options) {
     if (options.json.empty()) {
         print_table(options, verdict);
     } else {
-        write_json(options, verdict);
+        write_json(options.json, to_json(options, verdict));
     }
     return verdict.within_bound ? ExitCode::ok : ExitCode::check_failed;
 }
@@ -181,11 +189,14 @@ void add_compare_command(CLI::App& app, ExitCode& exit_code) {
         "compare", "Measure how far an image is from a reference; exit code 0 within the bound, 1 beyond it");
     command->add_option("image", options->image, "The image (EXR)")->required();
     command->add_option("reference", options->reference, "The reference (EXR)")->required();
-    command->add_option("--layer", options->layer, "A layer's name, beauty, or all")->capture_default_str();
+    command
+        ->add_option("--layer", options->layer, "A layer's name, beauty, or all, which both images must have")
+        ->capture_default_str();
     command->add_option("--metric", options->metric, "What the bound limits: rmse, relmse, mape or max_abs")
         ->check(CLI::IsMember(METRICS))
         ->capture_default_str();
     command->add_option("--bound", options->bound, "The largest error allowed; 0 asks for identical bits")
+        ->check(number_between(0, std::numeric_limits<float>::max()))
         ->capture_default_str();
     command->add_option("--heatmap", options->heat_map, "Write the relative error per pixel as PNG");
     command->add_option("--json", options->json, "Write the numbers to a file (- for standard output)");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // obscura compare A.exr B.exr: error metrics of A against the reference B, layer by layer, and a heat map.
-// Exit code 0 if every compared layer is within the bound, 1 if not.
+// Exit code 0 if both have the same layers and each is within the bound, 1 if not.
 #pragma once
 
 #include <CLI/App.hpp>

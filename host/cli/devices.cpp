@@ -7,23 +7,21 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "base/file.h"
 #include "base/progress.h"
+#include "cli/json_output.h"
 #include "device/selector.h"
 
 namespace obscura {
 
 namespace {
 
-nlohmann::ordered_json to_json(const std::vector<DeviceInfo>& devices) {
+Json to_json(const std::vector<DeviceInfo>& devices) {
     const int chosen = default_device(devices);
-    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    Json rows = Json::array();
     for (const DeviceInfo& info : devices) {
-        nlohmann::ordered_json row = {
-            {"platform", info.platform}, {"usable", info.usable}, {"reason", info.reason}};
+        Json row = {{"platform", info.platform}, {"usable", info.usable}, {"reason", info.reason}};
         if (info.platform_index >= 0) {
             row["platform_index"] = info.platform_index;
             row["platform_version"] = info.platform_version;
@@ -39,14 +37,9 @@ nlohmann::ordered_json to_json(const std::vector<DeviceInfo>& devices) {
                         {"max_allocation_bytes", info.max_allocation_bytes}});
         rows.push_back(std::move(row));
     }
-    nlohmann::ordered_json result = {{"default", nullptr}, {"devices", std::move(rows)}};
+    Json result = {{"default", nullptr}, {"devices", std::move(rows)}};
     if (chosen >= 0) result["default"] = devices[static_cast<size_t>(chosen)].index;
     return result;
-}
-
-std::string to_text(const nlohmann::ordered_json& json) {
-    // Drivers may name devices in any encoding.
-    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 void print_table(const std::vector<DeviceInfo>& devices) {
@@ -70,7 +63,8 @@ void print_table(const std::vector<DeviceInfo>& devices) {
         fmt::print("obscura can use none of them.\n");
     else
         fmt::print(
-            "Choose one with --device or OBSCURA_DEVICE: an index, platform:device, or part of a name.\n");
+            "Choose one with --device or OBSCURA_DEVICE: an index, platform:device, or part of its or its "
+            "platform's name or version.\n");
 }
 
 }  // namespace
@@ -85,10 +79,8 @@ void add_devices_command(CLI::App& app, ExitCode& exit_code) {
         const std::vector<DeviceInfo> devices = list_devices();
         if (json_target->empty()) {
             print_table(devices);
-        } else if (const std::string text = to_text(to_json(devices)); *json_target == "-") {
-            fmt::print("{}", text);
         } else {
-            write_text(*json_target, text);
+            write_json(*json_target, to_json(devices));
         }
         exit_code = ExitCode::ok;
     });

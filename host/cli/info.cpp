@@ -6,11 +6,10 @@
 
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 
-#include "base/file.h"
+#include "cli/json_output.h"
 #include "scene/gltf.h"
 #include "scene/needs.h"
 #include "scene/radiometry.h"
@@ -57,16 +56,16 @@ const char* type_name(LightType type) {
 }
 
 template <typename Vector>
-nlohmann::json to_json(const Vector& v) {
+Json to_json(const Vector& v) {
     return {v.x, v.y, v.z};
 }
 
-nlohmann::json cameras_json(const Scene& scene) {
-    nlohmann::json rows = nlohmann::json::array();
+Json cameras_json(const Scene& scene) {
+    Json rows = Json::array();
     for (const Camera& camera : scene.cameras) {
-        nlohmann::json row = {{"name", camera.name},
-                              {"orthographic", camera.orthographic},
-                              {"position", to_json(camera.camera_to_world.translation())}};
+        Json row = {{"name", camera.name},
+                    {"orthographic", camera.orthographic},
+                    {"position", to_json(camera.camera_to_world.translation())}};
         if (camera.orthographic)
             row["half_height"] = camera.half_height;
         else
@@ -76,34 +75,34 @@ nlohmann::json cameras_json(const Scene& scene) {
     return rows;
 }
 
-nlohmann::json lights_json(const Scene& scene) {
-    nlohmann::json rows = nlohmann::json::array();
+Json lights_json(const Scene& scene) {
+    Json rows = Json::array();
     for (const PunctualLight& light : scene.lights)
         rows.push_back(
             {{"name", light.name}, {"type", type_name(light.type)}, {"intensity", to_json(light.intensity)}});
     return rows;
 }
 
-nlohmann::json to_json(const SceneInfo& info) {
+Json to_json(const SceneInfo& info) {
     const Scene& scene = info.scene;
-    nlohmann::json result = {{"file", info.file},
-                             {"triangles", scene.triangles.size()},
-                             {"dropped_triangles", scene.dropped_triangles},
-                             {"vertices", scene.vertices.size()},
-                             {"objects", scene.objects.size()},
-                             {"materials", scene.materials.size()},
-                             {"textures", scene.textures.size()},
-                             {"emissive_triangles", info.emissive_triangles},
-                             {"lights", lights_json(scene)},
-                             {"cameras", cameras_json(scene)},
-                             {"area", info.radiometry.area},
-                             {"diagonal", info.diagonal},
-                             {"emitted", to_json(info.radiometry.emitted)},
-                             {"R_ave", to_json(info.radiometry.average_reflectivity)},
-                             {"I_A", to_json(info.radiometry.ambient_bleeding)},
-                             {"I_A_colourless", to_json(info.radiometry.ambient_colourless)},
-                             {"needs", nlohmann::json::array()},
-                             {"needs_reasons", nlohmann::json::object()}};
+    Json result = {{"file", info.file},
+                   {"triangles", scene.triangles.size()},
+                   {"dropped_triangles", scene.dropped_triangles},
+                   {"vertices", scene.vertices.size()},
+                   {"objects", scene.objects.size()},
+                   {"materials", scene.materials.size()},
+                   {"textures", scene.textures.size()},
+                   {"emissive_triangles", info.emissive_triangles},
+                   {"lights", lights_json(scene)},
+                   {"cameras", cameras_json(scene)},
+                   {"area", info.radiometry.area},
+                   {"diagonal", info.diagonal},
+                   {"emitted", to_json(info.radiometry.emitted)},
+                   {"R_ave", to_json(info.radiometry.average_reflectivity)},
+                   {"I_A", to_json(info.radiometry.ambient_bleeding)},
+                   {"I_A_colourless", to_json(info.radiometry.ambient_colourless)},
+                   {"needs", Json::array()},
+                   {"needs_reasons", Json::object()}};
     if (!scene.bounds.isEmpty())
         result["bounds"] = {{"min", to_json(scene.bounds.min)}, {"max", to_json(scene.bounds.max)}};
     for (const Need& need : info.needs) {
@@ -203,10 +202,8 @@ void add_info_command(CLI::App& app, ExitCode& exit_code) {
             print_cameras(info);
             print_averages(info);
             print_needs(info);
-        } else if (const std::string text = to_json(info).dump(2) + "\n"; *json_target == "-") {
-            fmt::print("{}", text);
         } else {
-            write_text(*json_target, text);
+            write_json(*json_target, to_json(info));
         }
         exit_code = ExitCode::ok;
     });

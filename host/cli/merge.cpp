@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "base/file.h"
 #include "base/log.h"
+#include "cli/number_range.h"
+#include "cli/output_paths.h"
 #include "film/image.h"
 
 namespace obscura {
@@ -22,8 +23,7 @@ struct MergeOptions {
 };
 
 ExitCode run_merge(const MergeOptions& options) {
-    require_writable(options.output);
-    if (!options.preview.empty()) require_writable(options.preview);
+    check_outputs({{"--output", options.output}, {"--preview", options.preview}}, options.parts);
     std::vector<Image> parts;
     for (const std::string& part : options.parts)
         parts.push_back(read_exr(part));
@@ -46,6 +46,7 @@ void add_merge_command(CLI::App& app, ExitCode& exit_code) {
     CLI::Option* preview = command->add_option("--preview", options->preview, "Write a preview (PNG) too");
     command->add_option("--exposure", options->exposure_stops, "The preview's exposure in stops")
         ->needs(preview)
+        ->check(exposure_range())
         ->capture_default_str();
     command->callback([options, &exit_code] { exit_code = run_merge(*options); });
 }

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/stats.h"
 
-#include <fmt/format.h>
-
-#include <nlohmann/json.hpp>
-
-#include "base/file.h"
+#include "cli/json_output.h"
 #include "sampling/sample_order.h"
 #include "scene/needs.h"
 #include "scene/radiometry.h"
@@ -13,20 +9,20 @@
 namespace obscura {
 namespace {
 
-nlohmann::json rgb(const V3d& v) {
+Json rgb(const V3d& v) {
     return {v.x, v.y, v.z};
 }
 
-nlohmann::json needed_names(const Scene& scene, const RenderSettings& settings) {
-    nlohmann::json names = nlohmann::json::array();
+Json needed_names(const Scene& scene, const RenderSettings& settings) {
+    Json names = Json::array();
     for (const Need& need : explain_needs(scene, settings)) {
         if (need.needed) names.push_back(need.name);
     }
     return names;
 }
 
-nlohmann::json kernel_rows(const RenderResult& result) {
-    nlohmann::json rows = nlohmann::json::object();
+Json kernel_rows(const RenderResult& result) {
+    Json rows = Json::object();
     for (const auto& [name, row] : result.profile) {
         rows[name] = {{"launches", row.launches}, {"items", row.items}, {"ms", row.ms}};
     }
@@ -38,7 +34,7 @@ nlohmann::json kernel_rows(const RenderResult& result) {
 void write_stats(const std::string& path, const Scene& scene, const DeviceInfo& device,
                  const RenderResult& result, const RunSeconds& seconds) {
     const RenderSettings& settings = result.settings;
-    const nlohmann::json stats{
+    const Json stats{
         {"version", OBSCURA_VERSION},
         {"scene", scene.name},
         {"device", device.name},
@@ -74,12 +70,7 @@ void write_stats(const std::string& path, const Scene& scene, const DeviceInfo& 
         {"bytes", result.bytes},
         {"needs", needed_names(scene, settings)},
     };
-    const std::string text = stats.dump(2) + "\n";
-    if (path == "-") {
-        fmt::print("{}", text);
-    } else {
-        write_text(path, text);
-    }
+    write_json(path, stats);
 }
 
 }  // namespace obscura

@@ -146,10 +146,32 @@ TEST_F(CompareCommand, DifferentSeedsSamplesAndChannelsAreWarnedOf) {
         << result.err;
 }
 
+TEST_F(CompareCommand, ImagesWithDifferentLayersAreNeitherIdenticalNorWithinABound) {
+    image_ = reference_;
+    image_.layers.pop_back();
+    const auto result = compare({"--json", "-"});
+    EXPECT_EQ(result.exit_code, ExitCode::check_failed);
+    const auto json = nlohmann::json::parse(result.out);
+    EXPECT_EQ(json.at("identical"), false);
+    EXPECT_EQ(json.at("within_bound"), false);
+    EXPECT_EQ(json.at("only_in_reference"), nlohmann::json{"ao.Y"});
+    EXPECT_EQ(compare({"--bound", "1"}).exit_code, ExitCode::check_failed);
+    EXPECT_NE(compare().out.find("they have different channels"), std::string::npos);
+    EXPECT_EQ(compare({"--layer", "N"}).exit_code, ExitCode::ok);  // both have it
+
+    image_ = reference_;
+    image_.layers[0].channels[2] = "A";  // of a chosen layer, what both have is held to a bound
+    EXPECT_EQ(compare({"--layer", "beauty"}).exit_code, ExitCode::check_failed);
+    EXPECT_EQ(compare({"--layer", "beauty", "--bound", "1e-6"}).exit_code, ExitCode::ok);
+}
+
 TEST_F(CompareCommand, WrongOptionsAreRefused) {
     EXPECT_INPUT_ERROR(compare({"--layer", "nope"}), "a.exr: it has no layer nope, only beauty, N, ao");
-    EXPECT_INPUT_ERROR(compare({"--bound", "-1"}), "--bound: it must be 0 or more");
-    EXPECT_INPUT_ERROR(compare({"--bound", "nan"}), "--bound: it must be 0 or more");
+    for (const char* bound : {"-1", "nan", "inf"})
+        EXPECT_THROW(compare({"--bound", bound}), CLI::ValidationError) << bound;
+    EXPECT_INPUT_ERROR(compare({"--heatmap", file("a.exr")}), "it is the input");
+    EXPECT_INPUT_ERROR(compare({"--heatmap", file("x"), "--json", file("x")}),
+                       "the same file as that of --heatmap");
     EXPECT_THROW(compare({"--metric", "psnr"}), CLI::ParseError);
     EXPECT_INPUT_ERROR(compare({"--json", file("no/out.json")}), "does not exist");
     image_.layers = {{"direct", {"R"}, {1, 1}}};

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 namespace obscura {
@@ -63,6 +64,14 @@ TEST(InfoCommand, JsonFileEqualsStandardOutput) {
     const std::string out = run_command(add_info_command, {"info", scene, "--json", "-"}).out;
     run_command(add_info_command, {"info", scene, "--json", folder.file("info.json")});
     EXPECT_EQ(read_text(folder.file("info.json")), out);
+}
+
+TEST(InfoCommand, JsonOfAPathThatIsNotUtf8IsValid) {
+    const test::TemporaryFolder folder;
+    const std::string odd = folder.file("r\xf6\xf6m.glb");  // Latin-1
+    std::filesystem::rename(write_scene(folder), odd);
+    const json info = json::parse(run_command(add_info_command, {"info", odd, "--json", "-"}).out);
+    EXPECT_EQ(info["file"], folder.file("r\ufffd\ufffdm.glb"));
 }
 
 TEST(InfoCommand, TableNamesEachPart) {

@@ -68,6 +68,11 @@ TEST_F(MergeCommand, FailuresWriteNothing) {
     EXPECT_INPUT_ERROR(merge(3, {"-o", file("no/whole.exr")}), "does not exist");
     EXPECT_INPUT_ERROR(merge(3, {"-o", file("whole.exr"), "--preview", file("no/a.png")}), "does not exist");
     EXPECT_FALSE(std::filesystem::exists(file("whole.exr")));
+    EXPECT_INPUT_ERROR(merge(3, {"-o", file("p1.exr")}), "p1.exr: it is the input");
+    EXPECT_INPUT_ERROR(
+        merge(3, {"-o", file("x"), "--preview", file("../") + folder_.path().filename().string() + "/x"}),
+        "it is the same file as that of --output");
+    EXPECT_THROW(merge(3, {"-o", "x", "--preview", "y", "--exposure", "nan"}), CLI::ValidationError);
     EXPECT_THROW(merge(3, {}), CLI::ParseError);
     EXPECT_THROW(merge(3, {"-o", file("whole.exr"), "--exposure", "1"}), CLI::ParseError);
 }

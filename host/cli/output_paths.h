@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks the files that a command will write before it begins its work.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace obscura {
+
+// What an option names: a file, "-" for standard output, or nothing.
+struct NamedPath {
+    std::string option;
+    std::string path;
+};
+
+// Throws InputError if an output can't be written, if two are the same file, or if one is an input.
+void check_outputs(const std::vector<NamedPath>& outputs, const std::vector<std::string>& inputs);
+
+}  // namespace obscura
