@@ -2,7 +2,9 @@
 // The program: one subcommand per file beside this one. The only catch, and the only exit code.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 
@@ -54,9 +56,13 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         obscura::log_error("The memory of this machine doesn't suffice for this input.");
         exit_code = ExitCode::bad_input;
-    } catch (const std::exception& error) {
-        obscura::log_error(std::string("An unexpected failure, please report it: ") + error.what());
+    } catch (const std::filesystem::filesystem_error& error) {
+        obscura::log_error(error.what());
         exit_code = ExitCode::bad_input;
+    } catch (const std::exception& error) {
+        // A bug in obscura, as a broken invariant is: none of the exit codes stands for it.
+        obscura::log_error(std::string("An unexpected failure, please report it: ") + error.what());
+        std::abort();
     }
     return static_cast<int>(exit_code);
 }

@@ -12,9 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "base/file.h"
 #include "base/log.h"
 #include "base/progress.h"
+#include "cli/number_range.h"
+#include "cli/output_paths.h"
+#include "cli/picture_output.h"
 #include "cli/render_options.h"
 #include "cli/stats.h"
 #include "film/develop.h"
@@ -45,6 +47,11 @@ void handle_interrupt(int signal) {
     [[maybe_unused]] const auto written = write(STDERR_FILENO, MESSAGE, sizeof(MESSAGE) - 1);
 }
 
+void on_interrupt(void (*handler)(int)) {
+    std::signal(SIGINT, handler);
+    std::signal(SIGTERM, handler);
+}
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -72,21 +79,6 @@ std::vector<std::string> resolve_layers(const std::vector<std::string>& wanted) 
     return layers;
 }
 
-// Writes what there is. If the picture can't be written where it was asked for, it goes to the folder for temporary files
-// before the error is reported: hours of rendering are not lost to a full disk.
-void write_picture(const Image& image, const OutputOptions& out) {
-    try {
-        write_exr(image, out.output, out.half_color);
-    } catch (const InputError& error) {
-        const auto rescue =
-            std::filesystem::temp_directory_path() / std::filesystem::path(out.output).filename();
-        if (rescue == std::filesystem::absolute(out.output)) throw;
-        write_exr(image, rescue, out.half_color);
-        throw InputError("{} The picture was saved as {} instead.", error.what(), rescue.string());
-    }
-    if (!out.preview.empty()) write_preview_png(image, out.preview, out.exposure_stops);
-}
-
 void print_summary(const RenderResult& result, const OutputOptions& out, const RunSeconds& seconds) {
     const double rays = static_cast<double>(result.rays.total());
     log_info("{} rays in {}, {} rays/s (camera {}, shadow {}, glossy {}, obscurance {})", si_count(rays),
@@ -103,32 +95,42 @@ void print_summary(const RenderResult& result, const OutputOptions& out, const R
     log_info("wrote {}{}", out.output, out.preview.empty() ? "" : " and " + out.preview);
 }
 
+// seconds: write and total are filled.
+void write_outputs(const OutputOptions& out, const Scene& scene, const DeviceInfo& device,
+                   const RenderResult& result, RunSeconds& seconds,
+                   std::chrono::steady_clock::time_point start) {
+    const auto write_start = std::chrono::steady_clock::now();
+    write_all({[&] { save_picture(result.image, out.output, out.half_color); },
+               [&] {
+                   if (!out.preview.empty()) write_preview_png(result.image, out.preview, out.exposure_stops);
+               },
+               [&] {
+                   seconds.write = seconds_since(write_start);
+                   seconds.total = seconds_since(start);
+                   if (!out.stats.empty()) write_stats(out.stats, scene, device, result, seconds);
+               }});
+}
+
 ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
     set_quiet(options.quiet);
     const auto start = std::chrono::steady_clock::now();
-    for (const std::string& path : {out.output, out.preview, out.stats}) {
-        if (!path.empty() && path != "-") require_writable(path);
-    }
+    const std::filesystem::path scene_file = find_scene_file(options.scene);
+    check_outputs({{"--output", out.output}, {"--preview", out.preview}, {"--stats", out.stats}},
+                  {scene_file.string()});
     const RenderSettings settings = settings_of(options);
     const std::vector<std::string> layers = resolve_layers(out.layers);
     const uint64_t queue_bytes = parse_bytes(options.memory);
-    const Scene scene = load_gltf(find_scene_file(options.scene));
+    const Scene scene = load_gltf(scene_file);
     RunSeconds seconds;
     seconds.load = seconds_since(start);
 
     Device device = open_device(options.device);
     ProgramLibrary library(device, options.local_size);
+    on_interrupt(handle_interrupt);
     log_info("{}: {} triangles, {} objects; device {}", scene.name, scene.triangles.size(),
              scene.objects.size(), device.name());
-    std::signal(SIGINT, handle_interrupt);
-    std::signal(SIGTERM, handle_interrupt);
     std::unique_ptr<Progress> progress;
-    const RenderJob job{scene,
-                        settings,
-                        layers,
-                        queue_bytes,
-                        options.wave_size == 0 ? DEFAULT_WAVE_SIZE : options.wave_size,
-                        options.portable};
+    const RenderJob job{scene, settings, layers, queue_bytes, options.wave_size, options.portable};
     const RenderResult result =
         render_scene(device, library, job, [&](double fraction, const RayCounts& rays) {
             if (!progress) progress = std::make_unique<Progress>("render", "rays");
@@ -138,11 +140,12 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
     if (progress) progress->finish(result.rays.total());
     progress.reset();
 
-    const auto write_start = std::chrono::steady_clock::now();
-    write_picture(result.image, out);
-    seconds.write = seconds_since(write_start);
-    seconds.total = seconds_since(start);
-    if (!out.stats.empty()) write_stats(out.stats, scene, device.info(), result, seconds);
+    if (result.rays.camera == 0) {
+        log_warning("stopped before the first sample: nothing is written");
+        return ExitCode::interrupted;
+    }
+    on_interrupt(SIG_IGN);  // writing takes a moment; ended in its midst, it would leave temporary files
+    write_outputs(out, scene, device.info(), result, seconds, start);
     print_summary(result, out, seconds);
     if (result.complete) return ExitCode::ok;
     log_warning("stopped early: the picture is saved with the samples it has");
@@ -160,10 +163,13 @@ void add_render_command(CLI::App& app, ExitCode& exit_code) {
         ->required()
         ->type_name("X.exr")
         ->group(group);
-    command->add_option("--preview", out->preview, "The beauty layer as an 8-bit PNG too")
-        ->type_name("X.png")
-        ->group(group);
+    CLI::Option* const preview =
+        command->add_option("--preview", out->preview, "The beauty layer as an 8-bit PNG too")
+            ->type_name("X.png")
+            ->group(group);
     command->add_option("--exposure", out->exposure_stops, "The preview's exposure in stops")
+        ->needs(preview)
+        ->check(exposure_range())
         ->capture_default_str()
         ->group(group);
     command->add_option("--layers", out->layers, "Layers beside beauty, separated by commas; all, or none")

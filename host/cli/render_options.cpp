@@ -9,6 +9,8 @@
 #include <map>
 
 #include "base/error.h"
+#include "cli/number_range.h"
+#include "sampling/lattice.h"
 
 namespace obscura {
 namespace {
@@ -27,8 +29,9 @@ CLI::Option* add_switch(CLI::App& command, const std::string& name, bool& value,
     return add_choice<bool>(command, name, value, {{"on", true}, {"off", false}}, help);
 }
 
-void add_rgb(CLI::App& command, const std::string& name, std::optional<Rgb>& value, const std::string& help) {
-    command
+CLI::Option* add_rgb(CLI::App& command, const std::string& name, std::optional<Rgb>& value,
+                     const std::string& help) {
+    return command
         .add_option_function<std::vector<float>>(
             name,
             [&value, name](const std::vector<float>& rgb) {
@@ -85,7 +88,7 @@ void add_image_options(CLI::App& command, RenderOptions& o) {
                             "Pixel filter")
         ->default_str("box")
         ->group("Picture");
-    add_rgb(command, "--background", s.background, "Radiance of the sky behind the scene");
+    add_rgb(command, "--background", s.background, "Radiance of the sky behind the scene")->group("Picture");
 }
 
 void add_model_options(CLI::App& command, RenderOptions& o) {
@@ -116,9 +119,10 @@ void add_model_options(CLI::App& command, RenderOptions& o) {
         ->default_str("on")
         ->group(group);
     add_rgb(command, "--ambient-light", s.ambient_light,
-            "Ambient radiance at an open point, instead of the scene's");
+            "Ambient radiance at an open point, instead of the scene's")
+        ->group(group);
     command.add_option("--ambient-scale", s.ambient_scale, "Multiplies the ambient light")
-        ->check(CLI::Range(0.0, 1e6))
+        ->check(number_between(0, 1e6))
         ->capture_default_str()
         ->group(group);
     command.add_flag("!--no-obscurance", s.obscurance, "Leave out the ambient light")->group(group);
@@ -154,7 +158,9 @@ void add_work_options(CLI::App& command, RenderOptions& o) {
         ->capture_default_str()
         ->group(group);
     command
-        .add_option("--device", o.device, "Index, platform:device, or part of a name (see obscura devices)")
+        .add_option("--device", o.device,
+                    "Index, platform:device, or part of the device's or platform's name or version (see "
+                    "obscura devices)")
         ->envname("OBSCURA_DEVICE")
         ->group(group);
     command.add_option("--memory", o.memory, "Device memory for the queues: bytes, or with K, M, G")
@@ -164,6 +170,7 @@ void add_work_options(CLI::App& command, RenderOptions& o) {
         .add_option("--wave-size", o.wave_size,
                     "Camera samples in flight at once; changes speed, not pictures")
         ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 31))
+        ->capture_default_str()
         ->group(group);
     command
         .add_option("--local-size", o.local_size, "Work items per work group; changes speed, not pictures")
@@ -180,6 +187,14 @@ void add_work_options(CLI::App& command, RenderOptions& o) {
                   "Use no instruction of one processor; the same pictures, slower")
         ->group(group);
     command.add_flag("--quiet", o.quiet, "Print only warnings and errors")->group(group);
+}
+
+// A pixel's points of one kind are numbered through: spp times those of each camera ray.
+void check_set_size(uint32_t spp, const char* option, uint32_t count) {
+    if (uint64_t{spp} * count <= MAX_SET_POINTS) return;
+    throw InputError(
+        "--spp {} times {} {} are more than {} points per pixel, which the samplers can't number", spp,
+        option, count, MAX_SET_POINTS);
 }
 
 }  // namespace
@@ -199,6 +214,8 @@ std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
 
 RenderSettings settings_of(const RenderOptions& options) {
     RenderSettings settings = options.settings;
+    check_set_size(settings.spp, "--obscurance-rays", settings.obscurance_rays);
+    check_set_size(settings.spp, "--light-samples", settings.light_samples);
     settings.falloff = parse_falloff(options.rho);
     settings.d_max = parse_max_distance(options.d_max);
     return settings;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scene/settings.h"
+#include "wavefront/render.h"
 
 namespace obscura {
 
@@ -20,8 +21,8 @@ struct RenderOptions {
     std::string rho = "exp";
     std::string d_max = "1";
     std::string device;
-    std::string memory = "256M";
-    uint64_t wave_size = 0;  // 0: the default
+    std::string memory = std::to_string(DEFAULT_QUEUE_BYTES >> 20) + "M";
+    uint64_t wave_size = DEFAULT_WAVE_SIZE;
     uint32_t local_size = 64;
     bool portable = false;
     bool quiet = false;
@@ -30,7 +31,8 @@ struct RenderOptions {
 // Registers the positional SCENE and the shared options on a subcommand.
 std::shared_ptr<RenderOptions> add_render_options(CLI::App& command);
 
-// Checks and converts what CLI11 left as text: falloff, d_max. Throws InputError.
+// Converts what CLI11 left as text, falloff and d_max, and checks what only several options together tell. Throws
+// InputError.
 RenderSettings settings_of(const RenderOptions& options);
 
 // "256M", "1.5G", "1073741824", with K, M, G as powers of 1024. Throws InputError.

@@ -40,6 +40,36 @@ CHANGES_PICTURE = {
     "--camera": ["--camera", "side"],
     "--exr-half": ["--exr-half"],
 }
+# What the header calls them, where merge stumbles first; precision (--exr-half) is no part of the header.
+ATTRIBUTES = {
+    "--spp --samples-per-pixel": "plannedSamplesPerPixel",
+    "--obscurance-rays --ao-samples": "obscuranceRays",
+    "--rho --falloff": "falloff",
+    "--dmax --ao-distance": "maxDistance",
+    "--ambient": "ambient",
+    "--bleeding": "ambientIntensity",
+    "--no-direct": "direct",
+    "--no-specular": "specular",
+    "--no-obscurance": "obscurance",
+    "--light-samples": "lightSamples",
+    "--roulette": "roulette",
+    "--filter": "filter",
+    "--background": "background",
+    "--ambient-light": "ambientIntensity",
+    "--ambient-scale": "ambientIntensity",
+    "--max-depth": "maxDepth",
+    "--seed": "seed",
+    "--sampler": "sampler",
+    "--camera": "camera",
+}
+# Neither infinite, nor not a number, nor beyond what can be worked with.
+REFUSED = [
+    ["--ambient-scale", "nan"], ["--ambient-scale", "inf"], ["--background", "nan,0,0"], ["--ambient-light", "0,inf,0"],
+    ["--cropwindow", "nan,1,0,1"], ["--dmax", "nan"], ["--rho", "exp:nan"], ["--memory", "nan"], ["--memory", "inf"],
+    ["--preview", "x.png", "--exposure", "nan"], ["--preview", "x.png", "--exposure", "1000"], ["--exposure", "1"],
+    ["--spp", "1048576", "--obscurance-rays", "4096"], ["--spp", "1048576", "--light-samples", "4096"],
+    ["--width", "nan"], ["--seed", "nan"],
+]
 # These change how the picture is made, not the picture.
 KEEPS_PICTURE = {
     "--memory": ["--memory", "256K"],
@@ -111,8 +141,8 @@ def write_room(path):
     path.write_text(json.dumps(gltf), encoding="utf-8")
 
 
-def obscura(*arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, check=False)
+def obscura(*arguments, cwd=None):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, check=False, cwd=cwd)
 
 
 class Options(unittest.TestCase):
@@ -166,6 +196,39 @@ class Options(unittest.TestCase):
                 for alias in set(spellings.split()) - {arguments[0]}:
                     self.render("alias", [alias, *arguments[1:]], replaces=spellings.split())
                     self.assertTrue(self.differs("alias"), f"{alias} doesn't change the picture")
+
+    def test_crops_made_with_different_options_are_not_merged(self):
+        self.assertEqual(set(CHANGES_PICTURE) - {"--exr-half"}, set(ATTRIBUTES))
+        self.render("left", ["--cropwindow", "0,0.5,0,1"])
+        self.render("right", ["--cropwindow", "0.5,1,0,1"])
+
+        def merge():
+            return obscura("merge", self.folder / "left.exr", self.folder / "right.exr", "-o", self.folder / "both.exr")
+
+        self.assertEqual(0, merge().returncode)
+        for spellings, name in ATTRIBUTES.items():
+            with self.subTest(spellings):
+                self.render("right", ["--cropwindow", "0.5,1,0,1", *CHANGES_PICTURE[spellings]])
+                result = merge()
+                self.assertEqual(2, result.returncode, result.stderr)
+                self.assertIn(f"right.exr: its {name} is ", result.stderr)
+
+    def test_values_without_sense_are_refused(self):
+        for arguments in REFUSED:
+            with self.subTest(" ".join(arguments)):
+                result = obscura("render", self.scene, "-o", self.folder / "refused.exr", *arguments)
+                self.assertEqual(2, result.returncode, result.stderr)
+                self.assertIn("--", result.stderr)
+                self.assertNotIn("compiling", result.stderr)
+                self.assertFalse((self.folder / "refused.exr").exists())
+
+    def test_outputs_must_be_different_files_and_not_the_scene(self):
+        scene = self.scene.read_bytes()
+        for arguments in (["-o", self.scene], ["-o", "x.exr", "--stats", self.scene], ["-o", "x.exr", "--preview", "./x.exr"]):
+            result = obscura("render", self.scene, *arguments, cwd=self.folder)
+            self.assertEqual(2, result.returncode, result.stderr)
+            self.assertRegex(result.stderr, "it is the (input|same file)")
+        self.assertEqual(scene, self.scene.read_bytes())
 
     def test_options_of_the_work_keep_the_picture_and_change_the_work(self):
         for spellings, arguments in KEEPS_PICTURE.items():
