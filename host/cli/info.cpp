@@ -11,6 +11,7 @@
 
 #include "cli/json_output.h"
 #include "scene/gltf.h"
+#include "scene/material.h"
 #include "scene/needs.h"
 #include "scene/radiometry.h"
 
@@ -36,8 +37,7 @@ SceneInfo gather_info(const std::string& path) {
     const Scene& scene = info.scene;
     info.needs = explain_needs(scene, with_default_sky(scene, {}));
     for (const Triangle& triangle : scene.triangles) {
-        const Material& material = scene.materials[triangle.material];
-        if (!material.unlit && material.emission != Rgb(0, 0, 0)) ++info.emissive_triangles;
+        if (is_emissive(scene.materials[triangle.material])) ++info.emissive_triangles;
     }
     if (!scene.bounds.isEmpty()) info.diagonal = (V3d(scene.bounds.max) - V3d(scene.bounds.min)).length();
     return info;

@@ -17,7 +17,7 @@
 #define MATERIAL_UNLIT 2u
 #define MATERIAL_MIRROR 4u  // a specular lobe without roughness
 #define MATERIAL_GLOSSY 8u  // a specular lobe with roughness
-#define MATERIAL_PANE 16u   // transmission > 0: a thin clear pane
+#define MATERIAL_PANE 16u   // lit, transmission > 0: a thin clear pane
 
 #define TEXTURE_WRAP_REPEAT 0u
 #define TEXTURE_WRAP_MIRROR 1u
