@@ -134,7 +134,10 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
     const RenderJob job{scene, settings, layers, queue_bytes, options.wave_size, options.portable};
     const RenderResult result =
         render_scene(device, library, job, [&](double fraction, const RayCounts& rays) {
-            if (!progress) progress = std::make_unique<Progress>("render", "rays");
+            if (!progress) {
+                seconds.first_wave = seconds_since(start);
+                progress = std::make_unique<Progress>("render", "rays");
+            }
             progress->update(fraction, rays.total());
             return !interrupted.load();
         });

@@ -63,6 +63,7 @@ void write_stats(const std::string& path, const Scene& scene, const DeviceInfo& 
           {"build", result.seconds.build},
           {"compile", result.seconds.compile},
           {"upload", result.seconds.upload},
+          {"first_wave", seconds.first_wave},
           {"render", result.seconds.render},
           {"write", seconds.write},
           {"total", seconds.total}}},

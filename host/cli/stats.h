@@ -12,7 +12,10 @@ namespace obscura {
 
 // Wall times around the render, seconds.
 struct RunSeconds {
-    double load = 0, write = 0, total = 0;
+    double load = 0;
+    double first_wave = 0;  // from the start of the program to the launch of the first wave
+    double write = 0;
+    double total = 0;
 };
 
 // path: a file, or "-" for standard output. Throws InputError.

@@ -102,11 +102,11 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     const Stopwatch compile_watch;
     const StageKernels kernels = prepare_kernels(library, result.needs, job);
     result.seconds.compile = compile_watch.seconds();
+    const SceneArrays arrays = make_scene_arrays(job.scene, settings.filter);
     const Bvh bvh = building.get();
     result.seconds.build = bvh.build_seconds;
 
     const Stopwatch upload_watch;
-    const SceneArrays arrays = make_scene_arrays(job.scene, settings.filter);
     const SceneBuffers scene = upload_scene(device, arrays, bvh);
     const uint64_t max_allocation = device.info().max_allocation_bytes;
     const QueueShape shape = queue_shape(result.needs, settings, planes);
