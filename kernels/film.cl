@@ -7,13 +7,50 @@
 #include "lib/math.clh"
 #include "lib/status.clh"
 
-// first_pixel: pixel of slot 0; count: samples in the wave.
+// The layer variance: squared deviations from the running mean (Welford 1962). The mean comes from the layers' sums
+// before the wave, so that no cut changes it. passes: samples that the pixel had before the wave.
+inline void add_deviations(global const Frame* frame, global const float4* paths, global float4* sums,
+                           size_t pixel, uint first_slot, uint count, uint passes) {
+    const uint pixels = frame->crop.z;
+    float3 layer_sums[BEAUTY_LAYERS];
+    float3 total = (float3)(0.0f);
+    for (uint layer = 0u; layer < BEAUTY_LAYERS; ++layer) {
+        const uint plane = layer_plane(frame, layer);
+        layer_sums[layer] = plane == NO_PLANE ? (float3)(0.0f) : sums[(size_t)plane * pixels + pixel].xyz;
+        total += layer_sums[layer];
+    }
+    const size_t target = (size_t)layer_plane(frame, LAYER_VARIANCE) * pixels + pixel;
+    float3 deviations = sums[target].xyz;
+    float n = (float)passes;
+    for (uint slot = first_slot; slot < count; slot += pixels) {
+        float3 beauty = (float3)(0.0f);
+        float3 next_total = (float3)(0.0f);
+        for (uint layer = 0u; layer < BEAUTY_LAYERS; ++layer) {
+            const uint plane = layer_plane(frame, layer);
+            if (plane == NO_PLANE) continue;
+            const float3 value = paths[path_index(frame, PATH_LAYERS + plane, slot)].xyz;
+            beauty += value;
+            layer_sums[layer] += value;
+            next_total += layer_sums[layer];
+        }
+        if (n > 0.0f) deviations += (beauty - total / n) * (beauty - next_total / (n + 1.0f));
+        total = next_total;
+        n += 1.0f;
+    }
+    sums[target] = (float4)(deviations, 0.0f);
+}
+
+// first_pixel, first_pass: where in the sample order the wave starts; count: samples in it.
 kernel void film(global const Frame* frame, global const float4* paths, global float4* sums,
-                 global uint* counters, uint first_pixel, uint count) {
+                 global uint* counters, uint first_pixel, uint first_pass, uint count) {
     const uint first_slot = (uint)get_global_id(0);
     const uint pixels = frame->crop.z;
     if (first_slot >= min(count, pixels)) return;
     const uint pixel = (first_pixel + first_slot) % pixels;
+    if (has_layer(frame, LAYER_VARIANCE)) {
+        const uint passes = first_pass + (first_pixel + first_slot) / pixels;
+        add_deviations(frame, paths, sums, pixel, first_slot, count, passes);
+    }
     const uint planes = layer_plane_count(frame);
     for (uint plane = 0u; plane < planes; ++plane) {
         const size_t target = (size_t)plane * pixels + pixel;

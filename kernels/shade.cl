@@ -180,12 +180,13 @@ inline bool sample_continuation(global const Frame* frame, const Vertex* v,
     return true;
 }
 
-inline void write_first_hit(global const Frame* frame, const Vertex* v, global float4* paths) {
+inline void write_first_hit(global const Frame* frame, const Vertex* v, float2 uv, global float4* paths) {
     const Surface* s = &v->surface;
     const float depth = dot(s->position - frame->camera_origin.xyz, frame->camera_forward.xyz);
     add_to_layer(frame, paths, LAYER_POSITION, v->slot, (float4)(s->position, depth));
     add_to_layer(frame, paths, LAYER_NORMAL, v->slot, (float4)(s->n_geo, 0.0f));
     add_to_layer(frame, paths, LAYER_SHADING, v->slot, (float4)(s->n_shade, 0.0f));
+    add_to_layer(frame, paths, LAYER_UV, v->slot, (float4)(uv, 0.0f, 0.0f));
     add_to_layer(frame, paths, LAYER_ALBEDO, v->slot, (float4)(v->diffuse + v->specular, 0.0f));
 }
 
@@ -265,7 +266,7 @@ kernel void shade(global const Frame* frame, global const SceneTriangle* triangl
     }
     add_to_layer(frame, paths, emission_layer, slot,
                  (float4)(v.throughput * emitted, depth == 0u ? 1.0f : 0.0f));
-    if (depth == 0u) write_first_hit(frame, &v, paths);
+    if (depth == 0u) write_first_hit(frame, &v, texture_coordinates(triangle, hit.y, hit.z), paths);
     if (unlit) {
         clear_light_lanes(frame, paths, slot);
         return;

@@ -14,21 +14,54 @@ float component(const f32x4& v, size_t i) {
     return i == 0 ? v.x : i == 1 ? v.y : i == 2 ? v.z : v.w;
 }
 
-// Mean of a layer at a pixel; 0 where the layer isn't kept.
-class Means {
-  public:
-    Means(const FilmSums& film, size_t pixel_count) : film_(film), pixel_count_(pixel_count) {}
+f32x4 operator*(const f32x4& v, float scale) {
+    return {v.x * scale, v.y * scale, v.z * scale, v.w * scale};
+}
 
-    f32x4 operator()(uint32_t layer, size_t pixel) const {
-        const uint32_t plane = film_.planes[layer];
-        const uint64_t count = film_.samples + (pixel < film_.pixels_ahead ? 1 : 0);
-        if (plane == NO_PLANE || count == 0) return {0, 0, 0, 0};
-        const f32x4& sum = film_.sums[size_t{plane} * pixel_count_ + pixel];
-        const auto n = static_cast<float>(count);
-        return {sum.x / n, sum.y / n, sum.z / n, sum.w / n};
+class Developer {
+  public:
+    Developer(const FilmSums& film, size_t pixel_count) : film_(film), pixel_count_(pixel_count) {}
+
+    // Mean of a layer at a pixel; 0 where the layer isn't kept.
+    f32x4 mean(uint32_t layer, size_t pixel) const {
+        const uint64_t n = samples(pixel);
+        if (n == 0) return {0, 0, 0, 0};
+        const f32x4 total = sum(layer, pixel);
+        const auto count = static_cast<float>(n);
+        return {total.x / count, total.y / count, total.z / count, total.w / count};
+    }
+
+    // Sum of the layers that partition it; w: coverage.
+    f32x4 beauty(size_t pixel) const {
+        f32x4 total = mean(LAYER_EMISSION, pixel);
+        for (uint32_t layer = LAYER_EMISSION + 1; layer < BEAUTY_LAYERS; ++layer) {
+            const f32x4 value = mean(layer, pixel);
+            total = {total.x + value.x, total.y + value.y, total.z + value.z, total.w};
+        }
+        return total;
+    }
+
+    // Of the samples, without bias; 0 where there are fewer than two.
+    f32x4 variance(size_t pixel) const {
+        const uint64_t n = samples(pixel);
+        return n < 2 ? f32x4{} : sum(LAYER_VARIANCE, pixel) * (1.0f / static_cast<float>(n - 1));
+    }
+
+    // As pbrt-v4 has it: the variance over the mean, 0 where that is 0.
+    f32x4 relative_variance(size_t pixel) const {
+        const f32x4 v = variance(pixel);
+        const f32x4 m = beauty(pixel);
+        const auto over = [](float a, float b) { return b != 0 ? a / b : 0; };
+        return {over(v.x, m.x), over(v.y, m.y), over(v.z, m.z), 0};
     }
 
   private:
+    uint64_t samples(size_t pixel) const { return film_.samples + (pixel < film_.pixels_ahead ? 1 : 0); }
+    f32x4 sum(uint32_t layer, size_t pixel) const {
+        const uint32_t plane = film_.planes[layer];
+        return plane == NO_PLANE ? f32x4{} : film_.sums[size_t{plane} * pixel_count_ + pixel];
+    }
+
     const FilmSums& film_;
     size_t pixel_count_;
 };
@@ -40,8 +73,9 @@ const LayerInfo& layer_info(const std::string& name) {
     return *found;
 }
 
-// First component of the layer's value that the channels start at: ao.Y and Z live in the fourth.
+// First component of the layer's value that the channels start at: v is the second, ao.Y and Z live in the fourth.
 size_t first_component(const std::string& name) {
+    if (name == "v") return 1;
     return name == "ao" || name == "Z" ? 3 : 0;
 }
 
@@ -65,7 +99,11 @@ const std::vector<LayerInfo>& layer_table() {
         {LAYER_POSITION, "Z", {"Z"}, "distance along the camera's axis, m"},
         {LAYER_NORMAL, "N", xyz, "geometric normal of the first hit, towards the camera"},
         {LAYER_SHADING, "Ns", xyz, "shading normal of the first hit, towards the camera"},
+        {LAYER_UV, "u", {"u"}, "texture coordinate of the first hit"},
+        {LAYER_UV, "v", {"v"}, "texture coordinate of the first hit"},
         {LAYER_ALBEDO, "Albedo", rgb, "diffuse + specular albedo of the first hit"},
+        {LAYER_VARIANCE, "Variance", rgb, "variance of the samples of a pixel"},
+        {LAYER_VARIANCE, "RelativeVariance", rgb, "that over the pixel's mean"},
     };
     return table;
 }
@@ -76,7 +114,7 @@ void develop_band(const FilmSums& film, std::span<const std::string> wanted, Ima
     OBSCURA_CHECK(planes > 0 && film.sums.size() % planes == 0, "{} sums in {} planes", film.sums.size(),
                   planes);
     const size_t pixel_count = film.sums.size() / planes;
-    const Means mean(film, pixel_count);
+    const Developer developer(film, pixel_count);
     if (image.layers.empty()) {
         image.layers.push_back({"", {"R", "G", "B", "A"}, {}});
         for (const std::string& name : wanted)
@@ -85,11 +123,7 @@ void develop_band(const FilmSums& film, std::span<const std::string> wanted, Ima
 
     std::vector<float>& beauty = image.layers[0].pixels;
     for (size_t pixel = 0; pixel < pixel_count; ++pixel) {
-        f32x4 sum = mean(LAYER_EMISSION, pixel);
-        for (uint32_t layer = LAYER_EMISSION + 1; layer < BEAUTY_LAYERS; ++layer) {
-            const f32x4 value = mean(layer, pixel);
-            sum = {sum.x + value.x, sum.y + value.y, sum.z + value.z, sum.w};
-        }
+        const f32x4 sum = developer.beauty(pixel);
         beauty.insert(beauty.end(), {sum.x, sum.y, sum.z, sum.w});
     }
     for (size_t i = 0; i < wanted.size(); ++i) {
@@ -97,7 +131,9 @@ void develop_band(const FilmSums& film, std::span<const std::string> wanted, Ima
         const size_t first = first_component(wanted[i]);
         std::vector<float>& pixels = image.layers[i + 1].pixels;
         for (size_t pixel = 0; pixel < pixel_count; ++pixel) {
-            const f32x4 value = mean(info.layer, pixel);
+            const f32x4 value = wanted[i] == "Variance"           ? developer.variance(pixel)
+                                : wanted[i] == "RelativeVariance" ? developer.relative_variance(pixel)
+                                                                  : developer.mean(info.layer, pixel);
             for (size_t c = 0; c < info.channels.size(); ++c)
                 pixels.push_back(component(value, first + c));
         }

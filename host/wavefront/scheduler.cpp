@@ -54,7 +54,7 @@ void Scheduler::run_wave(const Frame& frame, const Wave& wave) {
         if (ray_count > 0) std::swap(queues_.rays, queues_.next_rays);
     }
     run(Stage::film, "film", std::min(wave.count, frame.crop.z), queues_.frame, queues_.paths, queues_.film,
-        queues_.counters, wave.first_pixel, wave.count);
+        queues_.counters, wave.first_pixel, wave.first_pass, wave.count);
     std::array<uint32_t, STATUS_WORDS> status{};
     queues_.counters.download(status);
     check_status(status);

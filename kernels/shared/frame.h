@@ -52,11 +52,11 @@ typedef struct Frame {
     f32x4 ambient;     // rgb: I_A; w: unused
     f32x4 background;  // rgb: radiance of the sky; w: unused
     u32x4 lights;      // emissive triangles, punctual lights, FALLOFF_*, unused
-    u32x4 plane[3];  // plane of each LAYER_* in path slots and film (NO_PLANE = not kept); [11]: their number
+    u32x4 plane[4];  // plane of each LAYER_* in path slots and film (NO_PLANE = not kept); [13]: their number
 } Frame;
 
 #ifdef __cplusplus
-static_assert(sizeof(Frame) == 288, "device layout");
+static_assert(sizeof(Frame) == 304, "device layout");
 }  // namespace obscura
 #endif
 

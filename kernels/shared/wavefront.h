@@ -51,7 +51,10 @@
 #define LAYER_NORMAL 8      // xyz: geometric normal of the first hit; w: unused
 #define LAYER_SHADING 9     // xyz: shading normal of the first hit; w: unused
 #define LAYER_ALBEDO 10     // rgb: diffuse + specular albedo of the first hit; w: unused
-#define LAYER_COUNT 11
+#define LAYER_UV 11         // x: u, y: v, texture coordinates of the first hit; z, w: unused
+// rgb: sum of squared deviations of the samples' beauty from their mean. Only film fills it; it is 0 in path slots.
+#define LAYER_VARIANCE 12
+#define LAYER_COUNT 13
 
 // --- Counters and the first failure, read by the host once per depth ----------------------------------------
 #define COUNT_RAYS 0     // continuation rays appended for the next depth

@@ -52,12 +52,43 @@ TEST_F(FirstHit, AlphaIsCoverage) {
     table.expect_no_failure();
 }
 
+// A black sheet before a sky: every sample is 0 or the sky's radiance, so alpha tells the variance.
+TEST_F(FirstHit, VarianceIsThatOfTheSamples) {
+    constexpr uint32_t SPP = 16;
+    SceneBuilder builder;
+    builder.quad({-4.7f, -3, 0}, {6.95f, 0, 0}, {0, 6, 0}, builder.material(matte(Rgb(0))));
+    Scene scene = builder.finish();
+    scene.cameras = {metre_camera()};
+    RenderSettings settings = picture(16, 12, SPP, 1);
+    const Rgb SKY(2, 0.5f, 0);
+    settings.background = SKY;
+    const Image image = render(scene, settings, {"Variance", "RelativeVariance"}).image;
+    const std::vector<double> alpha = channel(image, "", 3);
+    size_t mixed = 0;
+    for (size_t i = 0; i < alpha.size(); ++i) {
+        if (alpha[i] > 0 && alpha[i] < 1) ++mixed;
+        for (size_t c = 0; c < 3; ++c) {
+            const double sky = static_cast<double>(SKY[static_cast<int>(c)]);
+            const double mean = sky * (1 - alpha[i]);
+            const double variance = sky * sky * alpha[i] * (1 - alpha[i]) * SPP / (SPP - 1);
+            EXPECT_NEAR(channel(image, "", c)[i], mean, 1e-6);
+            EXPECT_NEAR(channel(image, "Variance", c)[i], variance, 1e-5);
+            EXPECT_NEAR(channel(image, "RelativeVariance", c)[i], mean > 0 ? variance / mean : 0, 1e-5);
+        }
+    }
+    EXPECT_GE(mixed, 12U) << "the sheet's edges";
+    settings.spp = 1;
+    const Image one = render(scene, settings, {"Variance"}).image;
+    EXPECT_EQ(channel(one, "Variance", 0), std::vector<double>(16 * 12, 0.0))
+        << "one sample varies from nothing";
+}
+
 TEST_F(FirstHit, OfAWallIsWhereItStands) {
     SceneBuilder builder;
     builder.quad({-20, -20, 3}, {40, 0, 0}, {0, 40, 0}, builder.material(matte(Rgb(0.2f, 0.4f, 0.6f))));
     Scene scene = builder.finish();
     scene.cameras = {metre_camera()};
-    const Image image = render(scene, picture(16, 12, 8, 1), {"P", "Z", "N", "Ns", "Albedo"}).image;
+    const Image image = render(scene, picture(16, 12, 8, 1), {"P", "Z", "N", "Ns", "u", "v", "Albedo"}).image;
     for (size_t i = 0; i < 16 * 12; ++i) {
         const double x = static_cast<double>(i % 16) - 7.5, y = 5.5 - static_cast<double>(i / 16);
         const auto value = [&](const char* layer, size_t c) { return channel(image, layer, c)[i]; };
@@ -66,6 +97,8 @@ TEST_F(FirstHit, OfAWallIsWhereItStands) {
         EXPECT_NEAR(value("P", 1), y, 0.15);
         EXPECT_NEAR(value("P", 2), 3, 1e-5);
         EXPECT_NEAR(value("Z", 0), 7, 1e-5);
+        EXPECT_NEAR(value("u", 0), (value("P", 0) + 20) / 40, 1e-6);
+        EXPECT_NEAR(value("v", 0), (value("P", 1) + 20) / 40, 1e-6);
         for (const char* normal : {"N", "Ns"}) {
             EXPECT_EQ(value(normal, 0), 0);
             EXPECT_EQ(value(normal, 1), 0);

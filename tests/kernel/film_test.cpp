@@ -13,15 +13,22 @@ constexpr uint32_t PIXELS = 6;
 
 class FilmStage : public test::DeviceTest {
   protected:
-    // A wave over a picture of 3 x 2 pixels; slot s holds values of which the order of summation shows.
-    test::StageBench bench(uint32_t capacity) {
+    static Scene one_quad() {
         test::SceneBuilder builder;
         builder.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.material(test::matte(Rgb(0.5f))));
+        return builder.finish();
+    }
+    static RenderSettings settings_of_picture() {
         RenderSettings settings;
         settings.width = 3;
         settings.height = 2;
         settings.spp = 8;
-        test::StageBench bench(device(), builder.finish(), settings, capacity);
+        return settings;
+    }
+
+    // A wave over a picture of 3 x 2 pixels; slot s holds values of which the order of summation shows.
+    test::StageBench bench(uint32_t capacity) {
+        test::StageBench bench(device(), one_quad(), settings_of_picture(), capacity);
         for (uint32_t slot = 0; slot < capacity; ++slot) {
             for (uint32_t layer = 0; layer < BEAUTY_LAYERS; ++layer)
                 bench.layer(layer, slot) = value(layer, slot);
@@ -62,7 +69,7 @@ class FilmStage : public test::DeviceTest {
 
 TEST_F(FilmStage, AddsSlotsOfAFullWaveInAscendingOrder) {
     test::StageBench wave = bench(3 * PIXELS);
-    wave.run_film(0, 3 * PIXELS);
+    wave.run_film(0, 0, 3 * PIXELS);
     expect_sums(wave, 0, 3 * PIXELS);
     EXPECT_TRUE(wave.guards_untouched());
     EXPECT_EQ(wave.counters[STATUS_CODE], STATUS_OK);
@@ -70,29 +77,77 @@ TEST_F(FilmStage, AddsSlotsOfAFullWaveInAscendingOrder) {
 
 TEST_F(FilmStage, WaveMayStartAndEndInsideThePicture) {
     test::StageBench wave = bench(20);
-    wave.run_film(4, 15);
+    wave.run_film(4, 0, 15);
     expect_sums(wave, 4, 15);
 }
 
 TEST_F(FilmStage, PixelsBeyondAShortWaveStay) {
     test::StageBench wave = bench(16);
-    wave.run_film(5, 2);  // pixels 5 and 0
+    wave.run_film(5, 0, 2);  // pixels 5 and 0
     expect_sums(wave, 5, 2);
 }
 
 TEST_F(FilmStage, InfiniteContributionIsReported) {
     test::StageBench wave = bench(8);
     wave.layer(LAYER_DIRECT, 3).y = std::numeric_limits<float>::infinity();
-    wave.run_film(0, 8);
+    wave.run_film(0, 0, 8);
     EXPECT_EQ(wave.counters[STATUS_CODE], STATUS_NOT_FINITE);
     EXPECT_EQ(wave.counters[STATUS_STAGE], STAGE_FILM);
     EXPECT_EQ(wave.counters[STATUS_ITEM], 3U);
 }
 
+// Two samples of each pixel and then three, or all five at once: the same bits, and the variance of the beauty.
+TEST_F(FilmStage, DeviationsDontDependOnTheCut) {
+    constexpr uint32_t SAMPLES = 5;
+    const auto sample = [](uint32_t layer, uint32_t slot) {
+        const auto x = static_cast<float>((slot * 7 + layer * 3) % 11);
+        return f32x4{100 + x, 0.001f * x, 3, 0};
+    };
+    const auto rendered = [&](std::initializer_list<uint32_t> waves) {
+        test::StageBench wave(device(), one_quad(), settings_of_picture(), SAMPLES * PIXELS,
+                              {LAYER_VARIANCE});
+        for (uint32_t layer = 0; layer < LAYER_COUNT; ++layer) {
+            for (uint32_t pixel = 0; pixel < PIXELS && wave.plane(layer) != NO_PLANE; ++pixel)
+                wave.film_layer(layer, pixel) = {};
+        }
+        uint32_t pass = 0;
+        for (const uint32_t passes : waves) {
+            for (uint32_t slot = 0; slot < passes * PIXELS; ++slot) {
+                wave.layer(LAYER_VARIANCE, slot) = {};
+                for (uint32_t layer = 0; layer < BEAUTY_LAYERS; ++layer)
+                    wave.layer(layer, slot) = sample(layer, pass * PIXELS + slot);
+            }
+            wave.run_film(0, pass, passes * PIXELS);
+            pass += passes;
+        }
+        return wave;
+    };
+    test::StageBench whole = rendered({SAMPLES});
+    test::StageBench cut = rendered({2, 3});
+    for (uint32_t pixel = 0; pixel < PIXELS; ++pixel) {
+        double sum = 0, squares = 0;
+        for (uint32_t s = 0; s < SAMPLES; ++s) {
+            double beauty = 0;
+            for (uint32_t layer = 0; layer < BEAUTY_LAYERS; ++layer)
+                beauty += static_cast<double>(sample(layer, s * PIXELS + pixel).x);
+            sum += beauty;
+            squares += beauty * beauty;
+        }
+        const f32x4 deviations = whole.film_layer(LAYER_VARIANCE, pixel);
+        const double expected = squares - sum * sum / SAMPLES;
+        EXPECT_GT(expected, 1);
+        EXPECT_NEAR(static_cast<double>(deviations.x), expected, 1e-4 * expected) << "pixel " << pixel;
+        EXPECT_NEAR(static_cast<double>(deviations.y), 1e-6 * expected, 1e-10 * expected)
+            << "pixel " << pixel;
+        EXPECT_EQ(deviations.z, 0) << "no sample differs";
+        EXPECT_EQ(test::bits(cut.film_layer(LAYER_VARIANCE, pixel)), test::bits(deviations));
+    }
+}
+
 TEST_F(FilmStage, NoItemsDoNothing) {
     test::StageBench wave = bench(8);
     const auto before = wave.snapshot();
-    wave.run_film(0, 0);
+    wave.run_film(0, 0, 0);
     EXPECT_EQ(wave.snapshot(), before);
 }
 

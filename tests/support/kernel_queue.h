@@ -199,9 +199,9 @@ class StageBench {
         run(Stage::gather, frame_buffer_, rays().buffer(), visibility().buffer(), results().buffer(),
             paths().buffer(), count, depth);
     }
-    void run_film(uint32_t first_pixel, uint32_t count) {
+    void run_film(uint32_t first_pixel, uint32_t first_pass, uint32_t count) {
         run(Stage::film, frame_buffer_, paths().buffer(), film().buffer(), counter_buffer_, first_pixel,
-            count);
+            first_pass, count);
     }
 
     bool guards_untouched() const {
