@@ -145,13 +145,11 @@ void add_model_options(CLI::App& command, RenderOptions& o) {
 void add_work_options(CLI::App& command, RenderOptions& o) {
     RenderSettings& s = o.settings;
     const char* group = "Work";
-    add_choice<SamplerKind>(command, "--sampler", s.sampler,
-                            {{"auto", SamplerKind::automatic},
-                             {"lattice", SamplerKind::lattice},
-                             {"owen", SamplerKind::owen},
-                             {"random", SamplerKind::random}},
-                            "Sample points; auto picks the best for spp x obscurance rays")
-        ->default_str("auto")
+    add_choice<SamplerKind>(
+        command, "--sampler", s.sampler,
+        {{"lattice", SamplerKind::lattice}, {"owen", SamplerKind::owen}, {"random", SamplerKind::random}},
+        "Sample points")
+        ->default_str("lattice")
         ->group(group);
     command.add_option("--seed", s.seed, "Another seed, another noise")
         ->check(CLI::NonNegativeNumber)

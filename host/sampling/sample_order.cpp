@@ -18,13 +18,6 @@ std::vector<uint32_t> bit_reversed_order(uint32_t spp) {
     return order;
 }
 
-SamplerKind resolve_sampler(const RenderSettings& settings) {
-    if (settings.sampler != SamplerKind::automatic) return settings.sampler;
-    const uint64_t set_size = uint64_t{settings.spp} * settings.obscurance_rays;
-    const bool smooth = settings.falloff.kind != FalloffKind::step;
-    return smooth && set_size >= 64 ? SamplerKind::owen : SamplerKind::lattice;
-}
-
 const char* sampler_name(SamplerKind kind) {
     switch (kind) {
         case SamplerKind::lattice:
@@ -33,10 +26,8 @@ const char* sampler_name(SamplerKind kind) {
             return "owen";
         case SamplerKind::random:
             return "random";
-        case SamplerKind::automatic:
-            return "auto";
     }
-    return "auto";
+    return "";
 }
 
 }  // namespace obscura

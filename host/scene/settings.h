@@ -21,7 +21,7 @@ struct Falloff {
 };
 
 enum class Ambient { obscurance, constant, none };
-enum class SamplerKind : uint32_t { automatic = 0, lattice, owen, random };
+enum class SamplerKind : uint32_t { lattice = 1, owen, random };
 enum class PixelFilter : uint32_t { box = 0, tent, gauss, blackman_harris };
 enum class NeedsMode { automatic, all };
 
@@ -58,7 +58,7 @@ struct RenderSettings {
     double ambient_scale = 1;
     uint32_t max_depth = 5;  // glossy continuations of a camera path
     uint64_t seed = 0;
-    SamplerKind sampler = SamplerKind::automatic;
+    SamplerKind sampler = SamplerKind::lattice;
     std::string camera;  // name or index; empty: the first
     CropWindow crop;
     NeedsMode needs = NeedsMode::automatic;

@@ -54,6 +54,18 @@ uint32_t fold_seed(uint64_t seed) {
                                                         : static_cast<uint32_t>(mixed >> 32);
 }
 
+// The kernels compare with the host's numbers.
+static_assert(static_cast<uint32_t>(SamplerKind::lattice) == SAMPLER_LATTICE &&
+              static_cast<uint32_t>(SamplerKind::owen) == SAMPLER_OWEN &&
+              static_cast<uint32_t>(SamplerKind::random) == SAMPLER_RANDOM);
+static_assert(static_cast<uint32_t>(FalloffKind::step) == FALLOFF_STEP &&
+              static_cast<uint32_t>(FalloffKind::linear) == FALLOFF_LINEAR &&
+              static_cast<uint32_t>(FalloffKind::sqrt) == FALLOFF_SQRT &&
+              static_cast<uint32_t>(FalloffKind::cbrt) == FALLOFF_CBRT &&
+              static_cast<uint32_t>(FalloffKind::exp) == FALLOFF_EXP &&
+              static_cast<uint32_t>(FalloffKind::expjump) == FALLOFF_EXPJUMP &&
+              static_cast<uint32_t>(FalloffKind::pow) == FALLOFF_POW);
+
 }  // namespace
 
 LayerPlanes assign_planes(const Needs& needs, std::span<const uint32_t> wanted_layers) {

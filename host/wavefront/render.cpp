@@ -85,8 +85,7 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
                           const RenderCallback& after_wave) {
     device.memory().reset_peaks();
     RenderResult result;
-    RenderSettings settings = with_default_sky(job.scene, job.settings);
-    settings.sampler = resolve_sampler(settings);
+    const RenderSettings settings = with_default_sky(job.scene, job.settings);
     result.settings = settings;
     result.d_max = resolve_max_distance(settings.d_max, job.scene.bounds);
     result.radiometry = compute_radiometry(job.scene);

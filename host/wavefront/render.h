@@ -46,7 +46,7 @@ struct RenderResult {
     std::map<std::string, StageProfile> profile;
     Radiometry radiometry;
     Needs needs;
-    RenderSettings settings;  // with the sampler and the sky that were chosen
+    RenderSettings settings;  // with the sky that was chosen
     double d_max = 0;         // m
     uint32_t wave_capacity = 0;
     bool complete = true;            // false: stopped early, pixels have fewer samples

@@ -175,7 +175,7 @@ TEST_F(Lights, StandingRectanglesHaveTheirFormFactors) {
         builder.quad({-distance, 0, width}, {0, 0, -2 * width}, {0, height, 0},
                      builder.material(matte(Rgb(0), Rgb(2))));
         const double expected = ALBEDO * 2 * standing_factor(w, h, c);
-        table.add(fmt::format("{} x {} at {}", w, h, c), direct(builder.finish(), point_settings(64, 4)),
+        table.add(fmt::format("{} x {} at {}", w, h, c), direct(builder.finish(), point_settings(128, 4)),
                   expected, expected, 2e-6 * expected);
     }
     table.expect_no_failure();

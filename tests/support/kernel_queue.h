@@ -104,7 +104,6 @@ class StageBench {
                uint32_t capacity_of_wave, const std::vector<uint32_t>& wanted_layers = {})
         : capacity(capacity_of_wave), device_(device), library_(device) {
         settings.needs = NeedsMode::all;
-        settings.sampler = resolve_sampler(settings);
         needs_ = analyse_needs(scene_to_render, settings);
         const LayerPlanes planes = assign_planes(needs_, wanted_layers);
         const SceneArrays arrays = make_scene_arrays(scene_to_render, settings.filter);

@@ -118,16 +118,5 @@ TEST(SampleOrder, IsAPermutationWhosePrefixesAreSpread) {
     EXPECT_EQ(bit_reversed_order(8), (std::vector<uint32_t>{0, 4, 2, 6, 1, 5, 3, 7}));
 }
 
-TEST(SampleOrder, AutomaticSamplerFollowsTheSetSize) {
-    RenderSettings settings;
-    EXPECT_EQ(resolve_sampler(settings), SamplerKind::lattice);  // 8 x 5
-    settings.obscurance_rays = 8;
-    EXPECT_EQ(resolve_sampler(settings), SamplerKind::owen);  // 64 rays, smooth
-    settings.falloff.kind = FalloffKind::step;
-    EXPECT_EQ(resolve_sampler(settings), SamplerKind::lattice);
-    settings.sampler = SamplerKind::random;
-    EXPECT_EQ(resolve_sampler(settings), SamplerKind::random);
-}
-
 }  // namespace
 }  // namespace obscura
