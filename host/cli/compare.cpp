@@ -16,8 +16,8 @@
 
 #include "base/log.h"
 #include "cli/json_output.h"
-#include "cli/number_range.h"
 #include "cli/output_paths.h"
+#include "cli/validators.h"
 #include "film/attributes.h"
 #include "film/image.h"
 #include "film/metrics.h"
@@ -159,7 +159,7 @@ void print_table(const CompareOptions& options, const Verdict& verdict) {
 }
 
 ExitCode run_compare(const CompareOptions& options) {
-    check_outputs({{"--heatmap", options.heat_map}, {"--json", options.json}},
+    check_outputs({{"--heatmap", options.heat_map, ".png"}, {"--json", options.json}},
                   {options.image, options.reference});
     Image image = read_exr(options.image);
     Image reference = read_exr(options.reference);

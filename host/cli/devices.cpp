@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -82,7 +83,9 @@ void add_devices_command(CLI::App& app, ExitCode& exit_code) {
         } else {
             write_json(*json_target, to_json(devices));
         }
-        exit_code = ExitCode::ok;
+        const bool any_usable =
+            std::ranges::any_of(devices, [](const DeviceInfo& info) { return info.usable; });
+        exit_code = any_usable ? ExitCode::ok : ExitCode::device_failure;
     });
 }
 

@@ -33,7 +33,13 @@ ExitCode run(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         // --help and --version end here too, with success; anything else is a usage error.
-        return app.exit(error) == 0 ? ExitCode::ok : ExitCode::bad_input;
+        if (error.get_exit_code() == 0) {
+            app.exit(error);
+            return ExitCode::ok;
+        }
+        const bool unknown_subcommand = app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-';
+        throw InputError("{}\nRun obscura --help, or obscura SUBCOMMAND --help, for more.",
+                         unknown_subcommand ? fmt::format("{} is not a subcommand.", argv[1]) : error.what());
     }
     return exit_code;
 }

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/log.h"
-#include "cli/number_range.h"
 #include "cli/output_paths.h"
+#include "cli/validators.h"
 #include "film/image.h"
 
 namespace obscura {
@@ -23,7 +23,8 @@ struct MergeOptions {
 };
 
 ExitCode run_merge(const MergeOptions& options) {
-    check_outputs({{"--output", options.output}, {"--preview", options.preview}}, options.parts);
+    check_outputs({{"--output", options.output, ".exr"}, {"--preview", options.preview, ".png"}},
+                  options.parts);
     std::vector<Image> parts;
     for (const std::string& part : options.parts)
         parts.push_back(read_exr(part));
@@ -42,7 +43,9 @@ void add_merge_command(CLI::App& app, ExitCode& exit_code) {
     CLI::App* command =
         app.add_subcommand("merge", "Merge the parts of one picture (crops) into the whole, exactly");
     command->add_option("parts", options->parts, "The parts (EXR)")->required();
-    command->add_option("-o,--output,--outfile", options->output, "The whole picture (EXR)")->required();
+    command->add_option("-o,--output,--outfile", options->output, "The whole picture (EXR)")
+        ->required()
+        ->check(not_empty());
     CLI::Option* preview = command->add_option("--preview", options->preview, "Write a preview (PNG) too");
     command->add_option("--exposure", options->exposure_stops, "The preview's exposure in stops")
         ->needs(preview)

@@ -15,11 +15,11 @@
 
 #include "base/log.h"
 #include "base/progress.h"
-#include "cli/number_range.h"
 #include "cli/output_paths.h"
 #include "cli/picture_output.h"
 #include "cli/render_options.h"
 #include "cli/stats.h"
+#include "cli/validators.h"
 #include "film/develop.h"
 #include "scene/gltf.h"
 #include "wavefront/render.h"
@@ -51,6 +51,7 @@ void handle_interrupt(int signal) {
 void on_interrupt(void (*handler)(int)) {
     std::signal(SIGINT, handler);
     std::signal(SIGTERM, handler);
+    std::signal(SIGHUP, handler);
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -80,7 +81,7 @@ std::vector<std::string> resolve_layers(const std::vector<std::string>& wanted) 
     return layers;
 }
 
-void print_summary(const RenderResult& result, const OutputOptions& out, const RunSeconds& seconds) {
+void print_summary(const RenderResult& result, const RunSeconds& seconds) {
     const double rays = static_cast<double>(result.rays.total());
     log_info("{} rays in {}, {} rays/s (camera {}, shadow {}, glossy {}, obscurance {})", si_count(rays),
              duration_text(result.seconds.render), si_count(rays / result.seconds.render),
@@ -93,7 +94,6 @@ void print_summary(const RenderResult& result, const OutputOptions& out, const R
              duration_text(result.seconds.compile), duration_text(result.seconds.upload),
              duration_text(result.seconds.render), duration_text(seconds.write),
              bytes_text(result.bytes.at("peak_device")));
-    log_info("wrote {}{}", out.output, out.preview.empty() ? "" : " and " + out.preview);
 }
 
 // seconds: write and total are filled.
@@ -101,9 +101,14 @@ void write_outputs(const OutputOptions& out, const Scene& scene, const DeviceInf
                    const RenderResult& result, RunSeconds& seconds,
                    std::chrono::steady_clock::time_point start) {
     const auto write_start = std::chrono::steady_clock::now();
-    write_all({[&] { save_picture(result.image, out.output, out.half_color); },
+    write_all({[&] {
+                   save_picture(result.image, out.output, out.half_color);
+                   log_info("wrote {}", out.output);
+               },
                [&] {
-                   if (!out.preview.empty()) write_preview_png(result.image, out.preview, out.exposure_stops);
+                   if (out.preview.empty()) return;
+                   write_preview_png(result.image, out.preview, out.exposure_stops);
+                   log_info("wrote {}", out.preview);
                },
                [&] {
                    seconds.write = seconds_since(write_start);
@@ -116,8 +121,9 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
     set_quiet(options.quiet);
     const auto start = std::chrono::steady_clock::now();
     const std::filesystem::path scene_file = find_scene_file(options.scene);
-    check_outputs({{"--output", out.output}, {"--preview", out.preview}, {"--stats", out.stats}},
-                  {scene_file.string()});
+    check_outputs(
+        {{"--output", out.output, ".exr"}, {"--preview", out.preview, ".png"}, {"--stats", out.stats}},
+        {scene_file.string()});
     const RenderSettings settings = settings_of(options);
     const std::vector<std::string> layers = resolve_layers(out.layers);
     const uint64_t queue_bytes = parse_bytes(options.memory);
@@ -150,7 +156,7 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
     }
     on_interrupt(SIG_IGN);  // writing takes a moment; ended in its midst, it would leave temporary files
     write_outputs(out, scene, device.info(), result, seconds, start);
-    print_summary(result, out, seconds);
+    print_summary(result, seconds);
     if (result.complete) return ExitCode::ok;
     log_warning("stopped early: the picture is saved with the samples it has");
     return ExitCode::interrupted;
@@ -165,6 +171,7 @@ void add_render_command(CLI::App& app, ExitCode& exit_code) {
     const char* group = "Output";
     command->add_option("-o,--output,--outfile", out->output, "The picture with all its layers (EXR)")
         ->required()
+        ->check(not_empty())
         ->type_name("X.exr")
         ->group(group);
     CLI::Option* const preview =

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/render_options.h"
 
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "base/error.h"
-#include "cli/number_range.h"
+#include "cli/validators.h"
 #include "sampling/lattice.h"
 
 namespace obscura {
@@ -21,8 +25,19 @@ constexpr uint32_t MAX_SAMPLES = 1u << 24;  // per pixel and per point: float co
 template <typename Enum>
 CLI::Option* add_choice(CLI::App& command, const std::string& name, Enum& value,
                         const std::map<std::string, Enum>& choices, const std::string& help) {
-    return command.add_option(name, value, help)
-        ->transform(CLI::CheckedTransformer(choices, CLI::ignore_case));
+    std::vector<std::string> words;
+    for (const auto& choice : choices)
+        words.push_back(choice.first);
+    // CLI::CheckedTransformer would show, and take, the numbers behind the words too.
+    const auto choose = [&value, name, choices, words](const std::string& text) {
+        const auto found = choices.find(CLI::detail::to_lower(text));
+        if (found == choices.end()) {
+            throw CLI::ValidationError(name, fmt::format("{}: choose from {}", text, fmt::join(words, ", ")));
+        }
+        value = found->second;
+    };
+    return command.add_option_function<std::string>(name, choose, help)
+        ->type_name(fmt::format("{}", fmt::join(words, "|")));
 }
 
 CLI::Option* add_switch(CLI::App& command, const std::string& name, bool& value, const std::string& help) {
@@ -125,9 +140,18 @@ void add_model_options(CLI::App& command, RenderOptions& o) {
         ->check(number_between(0, 1e6))
         ->capture_default_str()
         ->group(group);
-    command.add_flag("!--no-obscurance", s.obscurance, "Leave out the ambient light")->group(group);
-    command.add_flag("!--no-direct", s.direct, "Leave out direct light on diffuse surfaces")->group(group);
-    command.add_flag("!--no-specular", s.specular, "Leave out reflections and transmission")->group(group);
+    command
+        .add_flag_callback(
+            "--no-obscurance", [&s] { s.obscurance = false; }, "Leave out the ambient light")
+        ->group(group);
+    command
+        .add_flag_callback(
+            "--no-direct", [&s] { s.direct = false; }, "Leave out direct light on diffuse surfaces")
+        ->group(group);
+    command
+        .add_flag_callback(
+            "--no-specular", [&s] { s.specular = false; }, "Leave out reflections and transmission")
+        ->group(group);
     command.add_option("--light-samples", s.light_samples, "Shadow rays per hit for each group of lights")
         ->check(CLI::Range(1u, 4096u))
         ->capture_default_str()
@@ -152,7 +176,7 @@ void add_work_options(CLI::App& command, RenderOptions& o) {
         ->default_str("lattice")
         ->group(group);
     command.add_option("--seed", s.seed, "Another seed, another noise")
-        ->check(CLI::NonNegativeNumber)
+        ->check(whole_number())
         ->capture_default_str()
         ->group(group);
     command

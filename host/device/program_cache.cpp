@@ -63,8 +63,10 @@ std::filesystem::path ProgramCache::entry_path(const std::string& key) const {
 }
 
 std::optional<std::vector<unsigned char>> ProgramCache::load(const std::string& key) const {
+    std::error_code ignored;
+    if (folder_.empty() || !std::filesystem::is_regular_file(entry_path(key), ignored)) return std::nullopt;
     std::ifstream file(entry_path(key), std::ios::binary);
-    if (folder_.empty() || !file) return std::nullopt;
+    if (!file) return std::nullopt;
     std::vector<unsigned char> bytes((std::istreambuf_iterator<char>(file)),
                                      std::istreambuf_iterator<char>());
     const size_t header_size = entry_header(key, "").size();
@@ -72,7 +74,7 @@ std::optional<std::vector<unsigned char>> ProgramCache::load(const std::string& 
     const std::string_view text = as_text(bytes);
     if (text.substr(0, header_size) != entry_header(key, text.substr(header_size))) return std::nullopt;
     bytes.erase(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(header_size));
-    std::error_code ignored;  // a folder that can be read only keeps its times
+    // A folder that can be read only keeps its times.
     std::filesystem::last_write_time(entry_path(key), std::filesystem::file_time_type::clock::now(), ignored);
     return bytes;
 }

@@ -85,8 +85,10 @@ Texture decode_texture(GltfReader& reader, int index, const std::string& owner) 
     std::string error, warning;
     if (!tinygltf::LoadImageData(&decoded, source.source, &error, &warning, 0, 0, encoded.data(),
                                  static_cast<int>(encoded.size()), nullptr))
-        reader.fail(place, "{} can't be decoded as PNG or JPEG.",
-                    gltf_place("image", image.name, static_cast<size_t>(source.source)));
+        reader.fail(
+            place, "{}{} can't be decoded as PNG or JPEG.",
+            gltf_place("image", image.name, static_cast<size_t>(source.source)),
+            image.uri.empty() || image.uri.starts_with("data:") ? "" : fmt::format(" ({})", image.uri));
     Texture texture;
     texture.name = image.name.empty() ? image.uri : image.name;
     texture.width = static_cast<uint32_t>(decoded.width);

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wavefront/render.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <future>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "bvh/bvh.h"
 #include "film/develop.h"
 #include "sampling/sample_order.h"
@@ -61,6 +64,27 @@ std::vector<uint32_t> wanted_layers(const std::vector<std::string>& names) {
     return layers;
 }
 
+uint64_t physical_memory_bytes() {
+    return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+// The layers in host memory and the film's sums on their way to them. A system that overcommits its memory would end
+// the program half-way.
+void check_picture_memory(const PixelRect& rect, const std::vector<std::string>& names,
+                          uint32_t film_planes) {
+    uint64_t channels = 4;  // of beauty
+    for (const LayerInfo& info : layer_table()) {
+        if (std::ranges::find(names, info.name) != names.end()) channels += info.channels.size();
+    }
+    const uint64_t bytes = rect.pixel_count() * (channels * sizeof(float) + film_planes * sizeof(f32x4));
+    if (bytes <= physical_memory_bytes()) return;
+    throw InputError(
+        "{} x {} pixels with {} layers take {} of memory, and this machine has {}; render fewer pixels "
+        "(--cropwindow) or layers (--layers)",
+        rect.width(), rect.height(), names.size() + 1, bytes_text(bytes),
+        bytes_text(physical_memory_bytes()));
+}
+
 void place_image(Image& image, const RenderSettings& settings, const PixelRect& rect) {
     image.full_width = static_cast<int32_t>(settings.width);
     image.full_height = static_cast<int32_t>(settings.height);
@@ -93,6 +117,7 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     result.needs = analyse_needs(job.scene, settings);
     const LayerPlanes planes = assign_planes(result.needs, wanted_layers(job.layers));
     const PixelRect rect = crop_pixels(settings.crop, settings.width, settings.height);
+    check_picture_memory(rect, job.layers, plane_count(planes));
     // An unknown camera is an error before any work is done.
     check_aspect(settings, select_camera(job.scene, settings).aspect_ratio);
 

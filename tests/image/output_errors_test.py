@@ -64,6 +64,24 @@ class OutputErrors(unittest.TestCase):
         self.assertTrue((self.folder / "x.exr").exists())
         self.assertTrue((self.folder / "x.json").exists())
 
+    def test_pictures_go_to_files_of_their_kind(self):
+        for arguments, message in [
+            (["-o", self.folder / "x.png"], "this file is written as .exr"),
+            (["-o", self.folder / "x.gltf"], "this file is written as .exr"),
+            (["-o", self.folder / "x.exr", "--preview", self.folder / "x.jpg"], "this file is written as .png"),
+            (["-o", "-"], "pictures are written to files only"),
+            (["-o", ""], "a name is needed"),
+        ]:
+            result = self.small(*arguments)
+            self.assertEqual(2, result.returncode, result.stderr)
+            self.assertIn(message, result.stderr)
+        self.assertEqual([self.rescue], list(self.folder.iterdir()))
+
+    def test_picture_larger_than_the_memory_is_refused(self):
+        result = self.render("-o", self.folder / "x.exr", "--width", 65536, "--height", 65536)
+        self.assertEqual(2, result.returncode, result.stderr)
+        self.assertRegex(result.stderr, "65536 x 65536 pixels with 8 layers take .* of memory, and this machine has")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -91,6 +91,18 @@ TEST_F(ObscuranceStage, DistancesCountFromThePoint) {
     }
 }
 
+// In a scene of huge coordinates the offset of the rays exceeds d_max: nothing is left of them to trace.
+TEST_F(ObscuranceStage, RaysThatStartBeyondTheReachAreOpen) {
+    test::StageBench wave = bench(1, 0.5);
+    add_point(wave, 0, {0, 0, -5});
+    wave.points().at(POINT_NORMAL, 0).w = 4.75f;
+    wave.run_obscurance(0);
+    for (uint32_t k = 0; k < K; ++k)
+        EXPECT_EQ(result(wave, 0, k).w, 1);
+    EXPECT_EQ(wave.counters[STATUS_CODE], STATUS_OK);
+    EXPECT_TRUE(wave.guards_untouched());
+}
+
 TEST_F(ObscuranceStage, DirectionsDependOnPathDepthAndK) {
     test::StageBench wave = bench(4, 2);
     for (uint32_t slot = 0; slot < 4; ++slot)

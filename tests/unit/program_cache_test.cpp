@@ -35,5 +35,14 @@ TEST(ProgramCache, UnusedForAMonthAreRemovedByAStore) {
     EXPECT_TRUE(fs::exists(folder.path() / "notes.txt"));
 }
 
+TEST(ProgramCache, FolderInPlaceOfAnEntryIsNoEntry) {
+    const test::TemporaryFolder folder;
+    ProgramCache cache(folder.path());
+    fs::create_directories(cache.entry_path("key") / "inside");
+    EXPECT_FALSE(cache.load("key"));
+    cache.store("key", std::vector<unsigned char>{1, 2, 3});  // warns; the next start compiles again
+    EXPECT_FALSE(cache.load("key"));
+}
+
 }  // namespace
 }  // namespace obscura

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The range check of options with real values.
+// Checks of option values that CLI11 lacks.
 #pragma once
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdint>
 #include <string>
+#include <system_error>
 
 namespace obscura {
 
@@ -19,6 +22,24 @@ inline CLI::Validator number_between(double low, double high) {
                 return fmt::format("{} is not a number from {}", text, range);
             },
             fmt::format("FLOAT in [{} - {}]", low, high)};
+}
+
+inline CLI::Validator not_empty() {
+    return {[](const std::string& text) {
+                return text.empty() ? std::string("a name is needed") : std::string();
+            },
+            ""};
+}
+
+// CLI11 reads what is too large for 64 bits as the largest number.
+inline CLI::Validator whole_number() {
+    return {[](const std::string& text) -> std::string {
+                uint64_t value = 0;
+                const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+                if (error == std::errc() && end == text.data() + text.size()) return {};
+                return fmt::format("{} is not a whole number from 0 to 2^64 - 1", text);
+            },
+            ""};
 }
 
 // Stops of a preview: beyond these every picture is black or white.
