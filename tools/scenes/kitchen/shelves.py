@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Two open shelves in the corner by the window: jars, spices, books, mugs on hooks."""
 
-from modelling.shapes import bend, tube
+from modelling.shapes import bend, quad, tube
 from modelling.surface import Model
 from modelling.sweep import lathe, slab
 
@@ -90,7 +90,9 @@ def radio(scene):
     dials = knob(0.014, 0.012).moved(0.06, 0.04, 0.045)
     scale = plain_front(0.055, 0.035, 0.003, 0.001).moved(0.06, 0.085, 0.045 - SINK)
     grip = bar_handle(0.14, 0.03, 0.004, 5).turned(("x", -90)).moved(0, 0.13, 0)
-    model = Model((p.SKY_BLUE, case), (p.CREAM, speaker), (p.PAPER, scale)).add(p.CHROME, dials, grip)
+    needle = quad((0.066, 0.073, 0.0485), (0.002, 0, 0), (0, 0.024, 0))
+    model = Model((p.SKY_BLUE, case), (p.CREAM, speaker), (p.PAPER, scale), (p.RED, needle))
+    model.add(p.CHROME, dials, grip)
     scene.add("Radio", model, at=(1.0, LOWER - SINK, 0.11), turn=[("y", 12)])
 
 

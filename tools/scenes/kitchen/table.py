@@ -139,7 +139,7 @@ def fruit_bowl(scene):
             scene.add(name, model, at=(x, h, z), turn=[("x", turn[0]), ("y", turn[1])])
         bananas = Surface()
         for k in range(3):
-            bananas.extend(vessels.banana().turned(("x", 18 * k - 18)).moved(-0.088, 0.193, 0.006))
+            bananas.extend(vessels.banana().turned(("x", 20 * k - 20)).moved(-0.088, 0.193, 0.006))
         scene.add("Bananas", Model((p.BANANA, bananas)))
 
 

@@ -42,15 +42,15 @@ def utensils(scene):
             14,
         )
         scene.add("Utensil pot", Model((p.ORANGE, pot)))
-        handle = lambda length, r: tube(
+        handle = lambda length, r, cap=True: tube(
             [(0, 0, 0), (0, length * 0.5, 0), (0, length, 0)],
             [r, r * 0.9, r * 0.8],
             6,
-            caps=(False, True),
+            caps=(False, cap),
             up=(0, 0, 1),
         )
         bowl = vessels.fruit(0.03, 8, 6, 1.3, 0.0)
-        spoon = Surface().extend(handle(0.24, 0.006)).extend(bowl.moved(0, 0.235, 0))
+        spoon = Surface().extend(handle(0.24, 0.006, cap=False)).extend(bowl.moved(0, 0.235, 0))
         spatula = (
             Surface().extend(handle(0.22, 0.006)).extend(slab(0.06, 0.006, 0.09, 0.002, bottom=True).moved(0, 0.218, 0))
         )

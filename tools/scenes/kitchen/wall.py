@@ -32,7 +32,7 @@ def clock(scene):
             w, a, b = (0.005, 0.078, 0.1) if hour % 3 == 0 else (0.003, 0.088, 0.1)
             mark = polygon([(-w, a, 0.0145), (w, a, 0.0145), (w, b, 0.0145), (-w, b, 0.0145)])
             marks.extend(mark.turned(("z", -30 * hour)))
-        for angle, length, width, z in ((-305, 0.055, 0.006, 0.017), (-54, 0.088, 0.004, 0.020)):
+        for angle, length, width, z in ((-305, 0.055, 0.006, 0.017), (-54, 0.088, 0.004, 0.020), (-222, 0.09, 0.0015, 0.023)):
             hand = polygon(
                 [(-width, -0.015, z), (width, -0.015, z), (width * 0.6, length, z), (-width * 0.6, length, z)]
             )
