@@ -196,7 +196,7 @@ void add_compare_command(CLI::App& app, ExitCode& exit_code) {
         ->check(CLI::IsMember(METRICS))
         ->capture_default_str();
     command->add_option("--bound", options->bound, "The largest error allowed; 0 asks for identical bits")
-        ->check(number_between(0, std::numeric_limits<float>::max()))
+        ->check(number_between(0, static_cast<double>(std::numeric_limits<float>::max())))
         ->capture_default_str();
     command->add_option("--heatmap", options->heat_map, "Write the relative error per pixel as PNG");
     command->add_option("--json", options->json, "Write the numbers to a file (- for standard output)");

@@ -26,6 +26,7 @@ template <typename Enum>
 CLI::Option* add_choice(CLI::App& command, const std::string& name, Enum& value,
                         const std::map<std::string, Enum>& choices, const std::string& help) {
     std::vector<std::string> words;
+    words.reserve(choices.size());
     for (const auto& choice : choices)
         words.push_back(choice.first);
     // CLI::CheckedTransformer would show, and take, the numbers behind the words too.
