@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stages of the wavefront: one table that launches, profile rows, overflow bounds and tests are driven by.
+// The stages of the wavefront: the table from which kernels are compiled, launched, named in messages and tested.
 // A stage called `shadow` is kernels/shadow.cl, its kernel, Stage::shadow and its profile row.
 #pragma once
 
