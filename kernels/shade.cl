@@ -98,18 +98,21 @@ inline void sample_lights(global const Frame* frame, const Vertex* v, global con
                           global const PointLight* point_lights, global float4* paths,
                           global float4* shadow_rays, global uint* counters) {
     const uint count = frame->sampling.z;
+    const bool selects = NEED_PUNCTUAL_LIGHTS || frame->lights.x > MAX_WEIGHED_LIGHTS;
+    SampleSet selections, light_points;
+    if (selects) {
+        selections = make_sample_set(frame, v->sampler, dimension_at(v->depth, DIMENSION_SELECT_LIGHT), count,
+                                     frame->lattice.zw, true);
+    }
+    if (NEED_AREA_LIGHTS) {
+        light_points = make_sample_set(frame, v->sampler, dimension_at(v->depth, DIMENSION_AREA_LIGHT), count,
+                                       frame->lattice.zw, true);
+    }
     for (uint l = 0u; l < count; ++l) {
-        float2 select = (float2)(0.0f);
-        if (NEED_PUNCTUAL_LIGHTS || frame->lights.x > MAX_WEIGHED_LIGHTS) {
-            select =
-                unit_float2(sample_codes(frame, v->sampler, dimension_at(v->depth, DIMENSION_SELECT_LIGHT), l,
-                                         count, frame->lattice.zw, true));
-        }
+        const float2 select = selects ? unit_float2(set_codes(&selections, l)) : (float2)(0.0f);
         uint sample = l;
         if (NEED_AREA_LIGHTS) {
-            const float2 u =
-                unit_float2(sample_codes(frame, v->sampler, dimension_at(v->depth, DIMENSION_AREA_LIGHT), l,
-                                         count, frame->lattice.zw, true));
+            const float2 u = unit_float2(set_codes(&light_points, l));
             const LightSample light = sample_area_light(triangles, materials, area_lights, frame->lights.x,
                                                         &v->surface, u, select.x);
             connect_light(frame, v, light, sample, paths, shadow_rays, counters);
@@ -180,13 +183,17 @@ inline bool sample_continuation(global const Frame* frame, const Vertex* v,
     return true;
 }
 
-inline void write_first_hit(global const Frame* frame, const Vertex* v, float2 uv, global float4* paths) {
+inline void write_first_hit(global const Frame* frame, const Vertex* v, global const SceneTriangle* triangle,
+                            float4 hit, global float4* paths) {
     const Surface* s = &v->surface;
     const float depth = dot(s->position - frame->camera_origin.xyz, frame->camera_forward.xyz);
     add_to_layer(frame, paths, LAYER_POSITION, v->slot, (float4)(s->position, depth));
     add_to_layer(frame, paths, LAYER_NORMAL, v->slot, (float4)(s->n_geo, 0.0f));
     add_to_layer(frame, paths, LAYER_SHADING, v->slot, (float4)(s->n_shade, 0.0f));
-    add_to_layer(frame, paths, LAYER_UV, v->slot, (float4)(uv, 0.0f, 0.0f));
+    if (has_layer(frame, LAYER_UV)) {
+        add_to_layer(frame, paths, LAYER_UV, v->slot,
+                     (float4)(texture_coordinates(triangle, hit.y, hit.z), 0.0f, 0.0f));
+    }
     add_to_layer(frame, paths, LAYER_ALBEDO, v->slot, (float4)(v->diffuse + v->specular, 0.0f));
 }
 
@@ -266,7 +273,7 @@ kernel void shade(global const Frame* frame, global const SceneTriangle* triangl
     }
     add_to_layer(frame, paths, emission_layer, slot,
                  (float4)(v.throughput * emitted, depth == 0u ? 1.0f : 0.0f));
-    if (depth == 0u) write_first_hit(frame, &v, texture_coordinates(triangle, hit.y, hit.z), paths);
+    if (depth == 0u) write_first_hit(frame, &v, triangle, hit, paths);
     if (unlit) {
         clear_light_lanes(frame, paths, slot);
         return;

@@ -66,13 +66,6 @@ class Developer {
     size_t pixel_count_;
 };
 
-const LayerInfo& layer_info(const std::string& name) {
-    const auto& table = layer_table();
-    const auto found = std::ranges::find_if(table, [&](const LayerInfo& info) { return name == info.name; });
-    OBSCURA_CHECK(found != table.end(), "no layer is called '{}'", name);
-    return *found;
-}
-
 // First component of the layer's value that the channels start at: v is the second, ao.Y and Z live in the fourth.
 size_t first_component(const std::string& name) {
     if (name == "v") return 1;
@@ -106,6 +99,13 @@ const std::vector<LayerInfo>& layer_table() {
         {LAYER_VARIANCE, "RelativeVariance", rgb, "that over the pixel's mean"},
     };
     return table;
+}
+
+const LayerInfo& layer_info(const std::string& name) {
+    const auto& table = layer_table();
+    const auto found = std::ranges::find_if(table, [&](const LayerInfo& info) { return name == info.name; });
+    OBSCURA_CHECK(found != table.end(), "no layer is called '{}'", name);
+    return *found;
 }
 
 void develop_band(const FilmSums& film, std::span<const std::string> wanted, Image& image) {

@@ -22,6 +22,7 @@ struct LayerInfo {
     const char* meaning;
 };
 const std::vector<LayerInfo>& layer_table();
+const LayerInfo& layer_info(const std::string& name);  // names not in the table: OBSCURA_CHECK
 
 // The sums of one film: plane of each LAYER_* (NO_PLANE = not kept), plane * pixel_count + pixel.
 struct FilmSums {

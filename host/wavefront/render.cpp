@@ -58,9 +58,9 @@ QueueShape queue_shape(const Needs& needs, const RenderSettings& settings, const
 
 std::vector<uint32_t> wanted_layers(const std::vector<std::string>& names) {
     std::vector<uint32_t> layers;
-    for (const LayerInfo& info : layer_table()) {
-        if (std::ranges::find(names, info.name) != names.end()) layers.push_back(info.layer);
-    }
+    layers.reserve(names.size());
+    for (const std::string& name : names)
+        layers.push_back(layer_info(name).layer);
     return layers;
 }
 
@@ -73,9 +73,8 @@ uint64_t physical_memory_bytes() {
 void check_picture_memory(const PixelRect& rect, const std::vector<std::string>& names,
                           uint32_t film_planes) {
     uint64_t channels = 4;  // of beauty
-    for (const LayerInfo& info : layer_table()) {
-        if (std::ranges::find(names, info.name) != names.end()) channels += info.channels.size();
-    }
+    for (const std::string& name : names)
+        channels += layer_info(name).channels.size();
     const uint64_t bytes = rect.pixel_count() * (channels * sizeof(float) + film_planes * sizeof(f32x4));
     if (bytes <= physical_memory_bytes()) return;
     throw InputError(
