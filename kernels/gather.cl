@@ -65,6 +65,7 @@ kernel void gather(global const Frame* frame, global const float4* rays, global 
     const uint i = (uint)get_global_id(0);
     if (i >= count) return;
     const uint slot = as_uint(rays[RAY_ORIGIN * frame->crop.w + i].w);
+    if (slot >= frame->crop.w) return;  // shade has reported it
     if (NEED_LIGHTS) gather_lights(frame, visibility, paths, slot, depth);
     if (NEED_AMBIENT) gather_ambient(frame, results, paths, slot, depth);
 }

@@ -64,6 +64,8 @@ kernel void obscurance(global const Frame* frame, global const BvhNode* nodes,
                        global float4* results, global uint* counters, uint depth) {
     const uint i = (uint)get_global_id(0);
     if (i >= counters[COUNT_POINTS]) return;
+    const uint slot = as_uint(points[POINT_POSITION * frame->crop.w + i].w);
+    if (!check_slot(counters, slot, frame->crop.w, STAGE_OBSCURANCE, i)) return;
     const ObscurancePoint point = load_obscurance_point(frame, points, paths, i, depth);
     const uint k_count = frame->sampling.y;
     global float4* point_results = results + (size_t)point.slot * k_count;

@@ -11,6 +11,7 @@
 #include "lib/lights.clh"
 #include "lib/math.clh"
 #include "lib/sampler.clh"
+#include "lib/status.clh"
 #include "shared/bvh.h"
 
 // Everything about the hit that more than one step below needs.
@@ -85,7 +86,7 @@ inline void connect_light(global const Frame* frame, const Vertex* v, LightSampl
     }
     if (max_component(diffuse + glossy) > 0.0f) {
         const uint i = atomic_inc(&counters[COUNT_SHADOWS]);
-        const size_t capacity = (size_t)frame->crop.w * light_sample_count(frame);
+        const uint capacity = frame->crop.w * light_sample_count(frame);
         const float3 origin = surface->position + surface->offset * surface->n_geo;
         shadow_rays[SHADOW_ORIGIN * capacity + i] =
             (float4)(origin, as_float(sample * frame->crop.w + v->slot));
@@ -236,6 +237,7 @@ kernel void shade(global const Frame* frame, global const SceneTriangle* triangl
     const uint capacity = frame->crop.w;
     const float4 origin = rays[RAY_ORIGIN * capacity + i];
     const uint slot = as_uint(origin.w);
+    if (!check_slot(counters, slot, capacity, STAGE_SHADE, i)) return;
     const float3 direction = rays[RAY_DIRECTION * capacity + i].xyz;
     const float4 hit = rays[RAY_HIT * capacity + i];
     const float4 throughput = paths[path_index(frame, PATH_THROUGHPUT, slot)];

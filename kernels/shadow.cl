@@ -33,17 +33,20 @@ inline float3 transmittance(global const BvhNode* nodes, global const TriangleBl
     return (float3)(0.0f);
 }
 
-kernel void shadow(global const BvhNode* nodes, global const TriangleBlock* blocks,
+kernel void shadow(global const Frame* frame, global const BvhNode* nodes, global const TriangleBlock* blocks,
                    global const SceneTriangle* triangles, global const SceneMaterial* materials,
                    global const uchar4* texels, global const float* tables, global const float4* shadow_rays,
-                   global float4* visibility, global uint* counters, uint shadow_capacity) {
+                   global float4* visibility, global uint* counters) {
     const uint i = (uint)get_global_id(0);
     if (i >= counters[COUNT_SHADOWS]) return;
-    const float4 origin = shadow_rays[(size_t)SHADOW_ORIGIN * shadow_capacity + i];
-    const float4 direction = shadow_rays[(size_t)SHADOW_DIRECTION * shadow_capacity + i];
+    const uint capacity = frame->crop.w * light_sample_count(frame);
+    const float4 origin = shadow_rays[SHADOW_ORIGIN * capacity + i];
+    const float4 direction = shadow_rays[SHADOW_DIRECTION * capacity + i];
+    const uint result = as_uint(origin.w);
+    if (!check_slot(counters, result, capacity, STAGE_SHADOW, i)) return;
     bool overflow;
     const float3 passed = transmittance(nodes, blocks, triangles, materials, texels, tables, origin.xyz,
                                         direction.xyz, direction.w, &overflow);
     if (overflow) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_SHADOW, i);
-    visibility[as_uint(origin.w)] = (float4)(passed, 0.0f);
+    visibility[result] = (float4)(passed, 0.0f);
 }

@@ -4,11 +4,13 @@
 //   Writes   hit i, in the ray's own lane
 #include "lib/status.clh"
 #include "lib/traverse.clh"
+#include "shared/frame.h"
 
-kernel void trace(global const BvhNode* nodes, global const TriangleBlock* blocks, global float4* rays,
-                  global uint* counters, uint capacity, uint count) {
+kernel void trace(global const Frame* frame, global const BvhNode* nodes, global const TriangleBlock* blocks,
+                  global float4* rays, global uint* counters, uint count) {
     const uint i = (uint)get_global_id(0);
     if (i >= count) return;
+    const uint capacity = frame->crop.w;
     const float3 origin = rays[RAY_ORIGIN * capacity + i].xyz;
     const float3 direction = rays[RAY_DIRECTION * capacity + i].xyz;
     const Hit hit = traverse(nodes, blocks, origin, direction, INFINITY, false);

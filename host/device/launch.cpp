@@ -4,26 +4,34 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "device/error.h"
 
-namespace obscura::detail {
+namespace obscura {
+namespace {
 
-void set_argument(const LaunchPlace& place, uint32_t index, uint64_t bytes, const void* value) {
-    const cl_int code = clSetKernelArg(place.kernel(), index, bytes, value);
-    if (code != CL_SUCCESS)
-        throw DeviceError("{}: clSetKernelArg of argument {} ({} bytes) failed with {} ({}) on {}.",
-                          place.stage, index, bytes, error_name(code), code, place.device.name());
-}
-
-void check_argument_count(const LaunchPlace& place, uint32_t count) {
+void set_arguments(const LaunchPlace& place, std::span<const LaunchArgument> arguments) {
     cl_uint expected = 0;
     check(clGetKernelInfo(place.kernel(), CL_KERNEL_NUM_ARGS, sizeof(expected), &expected, nullptr),
           "clGetKernelInfo", place.stage, place.device.name());
-    OBSCURA_CHECK(expected == count, "stage {}: the kernel takes {} arguments, {} are given", place.stage,
-                  expected, count);
+    OBSCURA_CHECK(expected == arguments.size(), "stage {}: the kernel takes {} arguments, {} are given",
+                  place.stage, expected, arguments.size());
+    for (cl_uint index = 0; index < expected; ++index) {
+        const LaunchArgument& argument = arguments[index];
+        OBSCURA_CHECK(argument.is_set(), "stage {}: argument {} is a buffer without memory", place.stage,
+                      index);
+        const cl_int code = clSetKernelArg(place.kernel(), index, argument.bytes(), argument.value());
+        if (code != CL_SUCCESS)
+            throw DeviceError("{}: clSetKernelArg of argument {} ({} bytes) failed with {} ({}) on {}.",
+                              place.stage, index, argument.bytes(), error_name(code), code,
+                              place.device.name());
+    }
 }
 
-cl::Event enqueue(const LaunchPlace& place, uint32_t local_size) {
+}  // namespace
+
+cl::Event launch(const LaunchPlace& place, uint32_t local_size, std::span<const LaunchArgument> arguments) {
+    set_arguments(place, arguments);
     OBSCURA_CHECK(place.item_count > 0 && local_size > 0, "stage {}: {} items in groups of {}", place.stage,
                   place.item_count, local_size);
     const uint64_t wanted = std::max(place.item_count, place.device.smallest_grid());
@@ -37,4 +45,4 @@ cl::Event enqueue(const LaunchPlace& place, uint32_t local_size) {
     return cl::Event(event);  // takes over the reference that the call gave
 }
 
-}  // namespace obscura::detail
+}  // namespace obscura

@@ -2,11 +2,13 @@
 // launch(): binds the arguments of a kernel, checks their number, and enqueues it over one dimension.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <type_traits>
 
-#include "base/error.h"
 #include "device/buffer.h"
 
 namespace obscura {
@@ -16,9 +18,32 @@ struct LocalMemory {
     uint64_t bytes;
 };
 
-namespace detail {
+// What a kernel parameter is set to: a buffer, local memory, or by value a number or a plain struct of kernels/shared. It
+// refers to what it was made from, which has to live until launch() returns.
+class LaunchArgument {
+  public:
+    explicit LaunchArgument(const Buffer& buffer)
+        : value_(&buffer.handle()()), bytes_(sizeof(cl_mem)), is_set_(buffer.handle()() != nullptr) {}
+    explicit LaunchArgument(const LocalMemory& local) : bytes_(local.bytes) {}
+    // A value as its bytes. A size that differs from the kernel's is refused by launch().
+    explicit LaunchArgument(std::span<const std::byte> value) : value_(value.data()), bytes_(value.size()) {}
+    template <typename T>
+    explicit LaunchArgument(const T& value) : value_(&value), bytes_(sizeof(T)) {
+        static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !std::is_same_v<T, bool>,
+                      "kernel arguments are buffers, local memory, numbers and plain structs");
+    }
 
-// What one kernel launch is, for error messages.
+    const void* value() const { return value_; }
+    uint64_t bytes() const { return bytes_; }
+    bool is_set() const { return is_set_; }  // false: a buffer without memory
+
+  private:
+    const void* value_ = nullptr;
+    uint64_t bytes_;
+    bool is_set_ = true;
+};
+
+// What one launch is, for error messages.
 struct LaunchPlace {
     const Device& device;
     const cl::Kernel& kernel;
@@ -26,40 +51,16 @@ struct LaunchPlace {
     uint64_t item_count;
 };
 
-void set_argument(const LaunchPlace& place, uint32_t index, uint64_t bytes, const void* value);
-void check_argument_count(const LaunchPlace& place, uint32_t count);
-cl::Event enqueue(const LaunchPlace& place, uint32_t local_size);
-
-inline void bind(const LaunchPlace& place, uint32_t index, const Buffer& buffer) {
-    const cl_mem memory = buffer.handle()();
-    OBSCURA_CHECK(memory != nullptr, "stage {}: argument {} is a buffer without memory", place.stage, index);
-    set_argument(place, index, sizeof(memory), &memory);
-}
-
-inline void bind(const LaunchPlace& place, uint32_t index, LocalMemory local) {
-    set_argument(place, index, local.bytes, nullptr);
-}
-
-// Scalars and the structs of kernels/shared, by value. A size that differs from the kernel's is refused.
-template <typename T>
-void bind(const LaunchPlace& place, uint32_t index, const T& value) {
-    static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !std::is_same_v<T, bool>,
-                  "kernel arguments are buffers, local memory, numbers and plain structs");
-    set_argument(place, index, sizeof(T), &value);
-}
-
-}  // namespace detail
-
-// Runs kernel over item_count > 0 items in groups of local_size; the last group is filled up, so the kernel
+// Runs the kernel over item_count > 0 items in groups of local_size; the last group is filled up, so the kernel
 // compares its index with the count it is given. Returns at once; the event carries the kernel's times.
+cl::Event launch(const LaunchPlace& place, uint32_t local_size, std::span<const LaunchArgument> arguments);
+
+// The same with the arguments where it is called.
 template <typename... Args>
-cl::Event launch(Device& device, const cl::Kernel& kernel, std::string_view stage, uint64_t item_count,
+cl::Event launch(const Device& device, const cl::Kernel& kernel, std::string_view stage, uint64_t item_count,
                  uint32_t local_size, const Args&... args) {
-    const detail::LaunchPlace place{device, kernel, stage, item_count};
-    detail::check_argument_count(place, sizeof...(Args));
-    uint32_t index = 0;
-    (detail::bind(place, index++, args), ...);
-    return detail::enqueue(place, local_size);
+    const std::array<LaunchArgument, sizeof...(Args)> arguments{LaunchArgument(args)...};
+    return launch({device, kernel, stage, item_count}, local_size, arguments);
 }
 
 }  // namespace obscura

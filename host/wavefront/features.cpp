@@ -52,7 +52,7 @@ std::string falloff_options(FalloffKind kind, bool all) {
 
 std::string stage_options(Stage stage, const Needs& needs, bool all, bool portable) {
     std::string options = portable ? " -D OBSCURA_PORTABLE" : "";
-    std::istringstream features{std::string(STAGES[static_cast<uint32_t>(stage)].features)};
+    std::istringstream features{std::string(stage_info(stage).features)};
     for (std::string feature; features >> feature;) {
         if (feature == "falloff") {
             options += falloff_options(needs.falloff, all);
@@ -61,15 +61,6 @@ std::string stage_options(Stage stage, const Needs& needs, bool all, bool portab
         }
     }
     return options;
-}
-
-std::vector<Stage> needed_stages(const Needs& needs) {
-    std::vector<Stage> stages{Stage::camera, Stage::trace, Stage::shade};
-    if (needs.direct()) stages.push_back(Stage::shadow);
-    if (needs.obscurance) stages.push_back(Stage::obscurance);
-    if (needs.direct() || needs.ambient) stages.push_back(Stage::gather);
-    stages.push_back(Stage::film);
-    return stages;
 }
 
 }  // namespace obscura

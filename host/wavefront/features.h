@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which kernels a render needs, compiled with what: the needs analysis turned into build options.
+// What a kernel is compiled with: the needs analysis turned into build options.
 #pragma once
 
 #include "device/program.h"
@@ -7,15 +7,11 @@
 #include "wavefront/stages.h"
 
 #include <string>
-#include <vector>
 
 namespace obscura {
 
 // Build options of a stage's kernel: "-D NEED_X=1" for each feature that it depends on and the scene needs.
 // all: --needs all, which compiles every falloff too. portable: without intrinsics of one processor.
 std::string stage_options(Stage stage, const Needs& needs, bool all, bool portable);
-
-// The stages this render launches.
-std::vector<Stage> needed_stages(const Needs& needs);
 
 }  // namespace obscura

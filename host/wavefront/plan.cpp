@@ -14,12 +14,8 @@ namespace {
 constexpr uint64_t LANE_BYTES = sizeof(f32x4);
 // Below this a wave is all launch overhead.
 constexpr uint64_t MIN_WAVE = 64;
-// Indices of results and pixels are 32 bits wide.
+// Indices into queues and of pixels are 32 bits wide.
 constexpr uint64_t MAX_INDEX = 0x7fffffff;
-
-uint64_t path_lanes(const QueueShape& shape) {
-    return PATH_LAYERS + shape.layer_planes + uint64_t{shape.light_samples} * shape.light_lobes;
-}
 
 }  // namespace
 
@@ -36,26 +32,36 @@ PixelRect crop_pixels(const CropWindow& crop, uint32_t width, uint32_t height) {
     return rect;
 }
 
+QueueShape queue_shape(const Needs& needs, const RenderSettings& settings, uint32_t layer_planes) {
+    const bool punctual = needs.point_lights || needs.spot_lights || needs.directional_lights;
+    QueueShape shape;
+    shape.layer_planes = layer_planes;
+    shape.light_samples = settings.light_samples * ((needs.area_lights ? 1u : 0u) + (punctual ? 1u : 0u));
+    shape.light_lobes = needs.glossy ? 2 : 1;
+    shape.obscurance_rays = needs.obscurance ? settings.obscurance_rays : 0;
+    shape.specular_paths = needs.specular_paths;
+    return shape;
+}
+
 uint64_t bytes_per_slot(const QueueShape& shape) {
-    const uint64_t ray_queues = shape.specular_paths ? 2 : 1;
-    const uint64_t lanes = ray_queues * RAY_LANES + path_lanes(shape) +
-                           uint64_t{shape.light_samples} * (SHADOW_LANES + 1) +
-                           (shape.obscurance_rays > 0 ? POINT_LANES + uint64_t{shape.obscurance_rays} : 0);
+    uint64_t lanes = 0;
+    for (const QueueSize& size : queue_sizes(shape))
+        lanes += size.lanes * size.items;
     return lanes * LANE_BYTES;
 }
 
 uint64_t largest_bytes_per_slot(const QueueShape& shape) {
-    return LANE_BYTES * std::max({uint64_t{RAY_LANES}, path_lanes(shape), uint64_t{shape.obscurance_rays},
-                                  uint64_t{shape.light_samples} * SHADOW_LANES});
+    uint64_t lanes = 0;
+    for (const QueueSize& size : queue_sizes(shape))
+        lanes = std::max(lanes, size.lanes * size.items);
+    return lanes * LANE_BYTES;
 }
 
 uint32_t wave_capacity(const QueueShape& shape, uint64_t wanted, uint64_t memory_bytes,
                        uint64_t max_allocation_bytes, uint64_t sample_count) {
-    const uint64_t fan_out =
-        std::max({uint64_t{1}, uint64_t{shape.light_samples}, uint64_t{shape.obscurance_rays}});
+    const uint64_t largest_queue = std::min(max_allocation_bytes, MAX_INDEX * LANE_BYTES);
     const uint64_t fits =
-        std::min({memory_bytes / bytes_per_slot(shape), max_allocation_bytes / largest_bytes_per_slot(shape),
-                  MAX_INDEX / fan_out});
+        std::min(memory_bytes / bytes_per_slot(shape), largest_queue / largest_bytes_per_slot(shape));
     if (fits < MIN_WAVE) {
         throw InputError(
             "{} of queue memory hold {} camera samples at {} each, {} are the least: raise --memory or "

@@ -3,7 +3,9 @@
 // never a bit of the picture.
 #pragma once
 
+#include "scene/needs.h"
 #include "scene/settings.h"
+#include "wavefront/queues.h"
 
 #include <cstdint>
 #include <vector>
@@ -21,16 +23,10 @@ struct PixelRect {
 // Throws InputError if the window holds no pixel.
 PixelRect crop_pixels(const CropWindow& crop, uint32_t width, uint32_t height);
 
-// What one path slot needs, and what may be used.
-struct QueueShape {
-    uint32_t layer_planes = 0;     // kept layers
-    uint32_t light_samples = 0;    // per path: L for each group of lights
-    uint32_t light_lobes = 1;      // contributions per light sample
-    uint32_t obscurance_rays = 0;  // K, 0 without obscurances
-    bool specular_paths = false;   // a second ray queue
-};
+// layer_planes: of the film.
+QueueShape queue_shape(const Needs& needs, const RenderSettings& settings, uint32_t layer_planes);
 
-// Bytes of all queues per path slot, and of the largest single buffer per slot.
+// Bytes of all queues per path slot, and of the largest single queue per slot.
 uint64_t bytes_per_slot(const QueueShape& shape);
 uint64_t largest_bytes_per_slot(const QueueShape& shape);
 

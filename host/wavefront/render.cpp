@@ -35,7 +35,8 @@ StageKernels prepare_kernels(ProgramLibrary& library, const Needs& needs, const 
     const std::vector<Stage> stages = needed_stages(needs);
     requests.reserve(stages.size());
     for (const Stage stage : stages) {
-        requests.push_back({std::string(stage_name(stage)), stage_options(stage, needs, all, job.portable)});
+        requests.push_back(
+            {std::string(stage_info(stage).name), stage_options(stage, needs, all, job.portable)});
     }
     library.prepare(requests);
     StageKernels kernels;
@@ -43,17 +44,6 @@ StageKernels prepare_kernels(ProgramLibrary& library, const Needs& needs, const 
         kernels[static_cast<uint32_t>(stages[i])] = library.kernel(requests[i]);
     }
     return kernels;
-}
-
-QueueShape queue_shape(const Needs& needs, const RenderSettings& settings, const LayerPlanes& planes) {
-    const bool punctual = needs.point_lights || needs.spot_lights || needs.directional_lights;
-    QueueShape shape;
-    shape.layer_planes = plane_count(planes);
-    shape.light_samples = settings.light_samples * ((needs.area_lights ? 1u : 0u) + (punctual ? 1u : 0u));
-    shape.light_lobes = needs.glossy ? 2 : 1;
-    shape.obscurance_rays = needs.obscurance ? settings.obscurance_rays : 0;
-    shape.specular_paths = needs.specular_paths;
-    return shape;
 }
 
 std::vector<uint32_t> wanted_layers(const std::vector<std::string>& names) {
@@ -132,7 +122,7 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     const Stopwatch upload_watch;
     const SceneBuffers scene = upload_scene(device, arrays, bvh);
     const uint64_t max_allocation = device.info().max_allocation_bytes;
-    const QueueShape shape = queue_shape(result.needs, settings, planes);
+    const QueueShape shape = queue_shape(result.needs, settings, plane_count(planes));
     const std::vector<PixelRect> bands = film_bands(rect, shape.layer_planes, max_allocation);
     const uint64_t sample_count = bands.front().pixel_count() * settings.spp;
     result.wave_capacity = wave_capacity(shape, job.wave_size, job.queue_bytes, max_allocation, sample_count);

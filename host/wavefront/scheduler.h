@@ -52,10 +52,9 @@ class Scheduler {
   private:
     void run_wave(const Frame& frame, const Wave& wave);
     // One depth of a wave's paths; the number of rays that go on.
-    uint32_t run_depth(const Frame& frame, uint32_t ray_count, uint32_t depth);
+    uint32_t run_depth(const Frame& frame, const Work& work);
     void check_status(const std::array<uint32_t, STATUS_WORDS>& status) const;
-    template <typename... Args>
-    void run(Stage stage, const char* row, uint64_t item_count, const Args&... args);
+    void run(Stage stage, const Work& work);
 
     Device& device_;
     const StageKernels& kernels_;

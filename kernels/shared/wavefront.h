@@ -68,6 +68,7 @@
 #define STATUS_OK 0u
 #define STATUS_NOT_FINITE 1u      // a NaN or infinite contribution
 #define STATUS_STACK_OVERFLOW 2u  // the traversal's stack
+#define STATUS_BAD_SLOT 3u        // an item's path slot or result index beyond what there is
 
 #define STAGE_CAMERA 0u
 #define STAGE_TRACE 1u

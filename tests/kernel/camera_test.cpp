@@ -156,12 +156,5 @@ TEST_F(CameraStage, TentFilterSpreadsRaysOverItsRadius) {
     EXPECT_LE(farthest, 1 + 1e-5);
 }
 
-TEST_F(CameraStage, NoItemsDoNothing) {
-    test::StageBench wave = bench(8);
-    const auto before = wave.snapshot();
-    wave.run_camera(0, 0, 0);
-    EXPECT_EQ(wave.snapshot(), before);
-}
-
 }  // namespace
 }  // namespace obscura

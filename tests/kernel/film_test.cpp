@@ -144,12 +144,5 @@ TEST_F(FilmStage, DeviationsDontDependOnTheCut) {
     }
 }
 
-TEST_F(FilmStage, NoItemsDoNothing) {
-    test::StageBench wave = bench(8);
-    const auto before = wave.snapshot();
-    wave.run_film(0, 0, 0);
-    EXPECT_EQ(wave.snapshot(), before);
-}
-
 }  // namespace
 }  // namespace obscura

@@ -109,13 +109,5 @@ TEST_F(GatherStage, TouchesOnlyTheSlotsOfItsItems) {
     }
 }
 
-TEST_F(GatherStage, NoItemsDoNothing) {
-    test::StageBench wave = bench(2);
-    wave.set_slot(0, 0);
-    const auto before = wave.snapshot();
-    wave.run_gather(0, 0);
-    EXPECT_EQ(wave.snapshot(), before);
-}
-
 }  // namespace
 }  // namespace obscura

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The structs of kernels/shared have the same size and member offsets on the host and on the device.
+#include <fmt/format.h>
+
 #include <cstddef>
 
 #include "device/launch.h"

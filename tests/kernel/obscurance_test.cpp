@@ -198,14 +198,5 @@ TEST_F(ObscuranceStage, UnlitOccludersBleedNoColour) {
     }
 }
 
-TEST_F(ObscuranceStage, NoPointsDoNothing) {
-    test::StageBench wave = bench(2, 2);
-    add_point(wave, 0, {0, 0, 0});
-    wave.counters[COUNT_POINTS] = 0;
-    const auto before = wave.snapshot();
-    wave.run_obscurance(0);
-    EXPECT_EQ(wave.snapshot(), before);
-}
-
 }  // namespace
 }  // namespace obscura

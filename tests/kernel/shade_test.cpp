@@ -242,12 +242,5 @@ TEST_F(ShadeStage, ItemsBeyondTheCountStay) {
     EXPECT_TRUE(wave.paths().untouched(PATH_AMBIENT, 0));
 }
 
-TEST_F(ShadeStage, NoItemsDoNothing) {
-    test::StageBench wave = bench({FLOOR, MIRROR});
-    const auto before = wave.snapshot();
-    wave.run_shade(0, 0);
-    EXPECT_EQ(wave.snapshot(), before);
-}
-
 }  // namespace
 }  // namespace obscura

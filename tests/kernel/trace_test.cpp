@@ -64,12 +64,6 @@ TEST_F(TraceStage, LeavesItemsBeyondTheCountAlone) {
         EXPECT_TRUE(bench.rays().untouched(RAY_HIT, i)) << "item " << i;
 }
 
-TEST_F(TraceStage, NoItemsDoNothing) {
-    test::StageBench bench = traced(5, 0);
-    for (uint32_t i = 0; i < 5; ++i)
-        EXPECT_TRUE(bench.rays().untouched(RAY_HIT, i));
-}
-
 // A tree in which every child of a node is the next node needs more stack than there is, in whatever order it is
 // visited. The builder never makes one.
 TEST_F(TraceStage, TooSmallStackIsReported) {

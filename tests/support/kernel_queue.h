@@ -16,15 +16,19 @@
 #include "shared/wavefront.h"
 #include "wavefront/features.h"
 #include "wavefront/frame.h"
+#include "wavefront/plan.h"
 #include "wavefront/stages.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace obscura::test {
@@ -57,16 +61,16 @@ inline f32x4 lane_of(const V3f& v, float w = 0) {
     return {v.x, v.y, v.z, w};
 }
 
-// Lanes of `capacity` items on the device, mirrored on the host.
+// Lanes of `item_count` items: the host's mirror of a buffer that it fills with canaries.
 class LaneQueue {
   public:
-    LaneQueue(Device& device, const char* name, uint32_t lane_count, uint32_t capacity)
-        : capacity_(capacity),
-          values_(size_t{lane_count} * capacity + GUARD, canary()),
-          buffer_(Buffer::holding(device, name, "test", values_)) {}
+    LaneQueue(Device& device, std::string_view name, uint64_t lane_count, uint64_t item_count, Buffer& buffer)
+        : item_count_(item_count), values_(lane_count * item_count + GUARD, canary()), buffer_(buffer) {
+        buffer = Buffer::holding(device, std::string(name), "test", values_);
+    }
 
-    f32x4& at(uint32_t lane, uint32_t item) { return values_[size_t{lane} * capacity_ + item]; }
-    const f32x4& at(uint32_t lane, uint32_t item) const { return values_[size_t{lane} * capacity_ + item]; }
+    f32x4& at(uint32_t lane, uint32_t item) { return values_[lane * item_count_ + item]; }
+    const f32x4& at(uint32_t lane, uint32_t item) const { return values_[lane * item_count_ + item]; }
 
     bool untouched(uint32_t lane, uint32_t item) const { return bits(at(lane, item)) == bits(canary()); }
     bool guard_untouched() const {
@@ -76,7 +80,6 @@ class LaneQueue {
 
     void upload() { buffer_.upload(values_); }
     void download() { buffer_.download(values_); }
-    const Buffer& buffer() const { return buffer_; }
     // A copy of the host's side, to compare with later.
     std::vector<std::array<uint32_t, 4>> snapshot() const {
         std::vector<std::array<uint32_t, 4>> words;
@@ -86,9 +89,9 @@ class LaneQueue {
     }
 
   private:
-    uint32_t capacity_;
+    uint64_t item_count_;
     std::vector<f32x4> values_;
-    Buffer buffer_;
+    Buffer& buffer_;
 };
 
 class StageBench {
@@ -102,7 +105,7 @@ class StageBench {
     // One wave of `capacity` path slots of a render with these settings; light_samples etc. come from them.
     StageBench(Device& device, const Scene& scene_to_render, RenderSettings settings,
                uint32_t capacity_of_wave, const std::vector<uint32_t>& wanted_layers = {})
-        : capacity(capacity_of_wave), device_(device), library_(device) {
+        : capacity(capacity_of_wave), device_(device), library_(device), buffers_(new Queues) {
         settings.needs = NeedsMode::all;
         needs_ = analyse_needs(scene_to_render, settings);
         const LayerPlanes planes = assign_planes(needs_, wanted_layers);
@@ -114,34 +117,30 @@ class StageBench {
                             static_cast<uint32_t>(arrays.point_lights.size()),
                             resolve_max_distance(settings.d_max, scene_to_render.bounds)},
                            rect, capacity);
-        frame_buffer_ = Buffer(device, "frame", "test", sizeof(Frame));
-        sample_order_ = Buffer::holding(device, "sample_order", "test", bit_reversed_order(settings.spp));
-        counter_buffer_ = Buffer(device, "counters", "test", sizeof(counters));
-        const uint32_t k_count = settings.obscurance_rays;
-        plane_count_ = plane_count(planes);
-        light_samples = 2 * settings.light_samples;  // of area lights, then of punctual lights
-        queues_.reserve(8);
-        for (const auto& [name, lanes, items] :
-             {std::tuple{"rays", uint32_t{RAY_LANES}, capacity},
-              {"next_rays", uint32_t{RAY_LANES}, capacity},
-              {"paths", PATH_LAYERS + plane_count_ + 2 * light_samples, capacity},
-              {"shadow_rays", uint32_t{SHADOW_LANES}, capacity * light_samples},
-              {"visibility", light_samples, capacity},
-              {"points", uint32_t{POINT_LANES}, capacity},
-              {"results", 1u, capacity * k_count},
-              {"film", plane_count_, static_cast<uint32_t>(rect.pixel_count())}}) {
-            queues_.emplace_back(device, name, lanes, items);
-        }
+        const QueueShape shape = queue_shape(needs_, settings, plane_count(planes));
+        plane_count_ = shape.layer_planes;
+        light_samples = shape.light_samples;  // of area lights, then of punctual lights
+        Queues& buffers = *buffers_;
+        buffers.shape = shape;
+        buffers.capacity = capacity;
+        buffers.frame = Buffer(device, "frame", "test", sizeof(Frame));
+        buffers.sample_order =
+            Buffer::holding(device, "sample_order", "test", bit_reversed_order(settings.spp));
+        buffers.counters = Buffer(device, "counters", "test", sizeof(counters));
+        for (const QueueSize& size : queue_sizes(shape))
+            queues_.try_emplace(size.name, device, size.name, size.lanes, size.items * capacity,
+                                buffers.*size.buffer);
+        queues_.try_emplace("film", device, "film", plane_count_, rect.pixel_count(), buffers.film);
     }
 
-    LaneQueue& rays() { return queues_[0]; }
-    LaneQueue& next_rays() { return queues_[1]; }
-    LaneQueue& paths() { return queues_[2]; }
-    LaneQueue& shadow_rays() { return queues_[3]; }
-    LaneQueue& visibility() { return queues_[4]; }
-    LaneQueue& points() { return queues_[5]; }
-    LaneQueue& results() { return queues_[6]; }
-    LaneQueue& film() { return queues_[7]; }
+    LaneQueue& rays() { return queues_.at("rays"); }
+    LaneQueue& next_rays() { return queues_.at("next_rays"); }
+    LaneQueue& paths() { return queues_.at("paths"); }
+    LaneQueue& shadow_rays() { return queues_.at("shadow_rays"); }
+    LaneQueue& visibility() { return queues_.at("visibility"); }
+    LaneQueue& points() { return queues_.at("points"); }
+    LaneQueue& results() { return queues_.at("results"); }
+    LaneQueue& film() { return queues_.at("film"); }
 
     void replace_bvh(const Bvh& bvh) {
         scene_.nodes = Buffer::holding(device_, "nodes", "test", bvh.nodes);
@@ -173,43 +172,42 @@ class StageBench {
 
     // The stages, launched over more items than there are: the counts have to guard them.
     void run_camera(uint32_t first_pixel, uint32_t first_pass, uint32_t count) {
-        run(Stage::camera, frame_buffer_, scene_.tables, sample_order_, rays().buffer(), paths().buffer(),
-            first_pixel, first_pass, count);
+        run(Stage::camera, {.first_pixel = first_pixel, .first_pass = first_pass, .count = count});
     }
-    void run_trace(uint32_t count) {
-        run(Stage::trace, scene_.nodes, scene_.blocks, rays().buffer(), counter_buffer_, capacity, count);
-    }
-    void run_shade(uint32_t count, uint32_t depth) {
-        run(Stage::shade, frame_buffer_, scene_.triangles, scene_.materials, scene_.area_lights,
-            scene_.point_lights, scene_.texels, scene_.tables, rays().buffer(), paths().buffer(),
-            next_rays().buffer(), shadow_rays().buffer(), points().buffer(), counter_buffer_, count, depth);
-    }
-    void run_shadow() {
-        run(Stage::shadow, scene_.nodes, scene_.blocks, scene_.triangles, scene_.materials, scene_.texels,
-            scene_.tables, shadow_rays().buffer(), visibility().buffer(), counter_buffer_,
-            capacity * light_samples);
-    }
-    void run_obscurance(uint32_t depth) {
-        run(Stage::obscurance, frame_buffer_, scene_.nodes, scene_.blocks, scene_.triangles, scene_.materials,
-            scene_.texels, scene_.tables, points().buffer(), paths().buffer(), results().buffer(),
-            counter_buffer_, depth);
-    }
-    void run_gather(uint32_t count, uint32_t depth) {
-        run(Stage::gather, frame_buffer_, rays().buffer(), visibility().buffer(), results().buffer(),
-            paths().buffer(), count, depth);
-    }
+    void run_trace(uint32_t count) { run(Stage::trace, {.count = count}); }
+    void run_shade(uint32_t count, uint32_t depth) { run(Stage::shade, {.count = count, .depth = depth}); }
+    void run_shadow() { run(Stage::shadow, {}); }
+    void run_obscurance(uint32_t depth) { run(Stage::obscurance, {.depth = depth}); }
+    void run_gather(uint32_t count, uint32_t depth) { run(Stage::gather, {.count = count, .depth = depth}); }
     void run_film(uint32_t first_pixel, uint32_t first_pass, uint32_t count) {
-        run(Stage::film, frame_buffer_, paths().buffer(), film().buffer(), counter_buffer_, first_pixel,
-            first_pass, count);
+        run(Stage::film, {.first_pixel = first_pixel, .first_pass = first_pass, .count = count});
+    }
+    void run(Stage stage, const Work& work) {
+        buffers_->frame.upload(std::span(&frame, 1));
+        buffers_->counters.upload(counters);
+        for (auto& [name, queue] : queues_)
+            queue.upload();
+        const StageInfo& info = stage_info(stage);
+        const cl::Kernel stage_kernel = kernel(stage);
+        constexpr uint64_t MORE_THAN_ENOUGH = 4096;
+        launch({device_, stage_kernel, info.name, MORE_THAN_ENOUGH}, library_.local_size(),
+               stage_arguments(info, scene_, *buffers_, work));
+        for (auto& [name, queue] : queues_)
+            queue.download();
+        buffers_->counters.download(counters);
+    }
+    cl::Kernel kernel(Stage stage) {
+        return library_.kernel(std::string(stage_info(stage).name),
+                               kernel_options.value_or(stage_options(stage, needs_, true, false)));
     }
 
     bool guards_untouched() const {
-        return std::ranges::all_of(queues_, [](const LaneQueue& queue) { return queue.guard_untouched(); });
+        return std::ranges::all_of(queues_, [](const auto& queue) { return queue.second.guard_untouched(); });
     }
     // Everything a stage could have written.
     std::vector<std::vector<std::array<uint32_t, 4>>> snapshot() const {
         std::vector<std::vector<std::array<uint32_t, 4>>> all;
-        for (const LaneQueue& queue : queues_)
+        for (const auto& [name, queue] : queues_)
             all.push_back(queue.snapshot());
         all.push_back({{counters[0], counters[1], counters[2], counters[3]},
                        {counters[4], counters[5], counters[6], counters[7]}});
@@ -217,29 +215,13 @@ class StageBench {
     }
 
   private:
-    template <typename... Args>
-    void run(Stage stage, const Args&... args) {
-        frame_buffer_.upload(std::span(&frame, 1));
-        counter_buffer_.upload(counters);
-        for (LaneQueue& queue : queues_)
-            queue.upload();
-        const std::string name(stage_name(stage));
-        const cl::Kernel kernel =
-            library_.kernel(name, kernel_options.value_or(stage_options(stage, needs_, true, false)));
-        constexpr uint64_t MORE_THAN_ENOUGH = 4096;
-        launch(device_, kernel, name, MORE_THAN_ENOUGH, library_.local_size(), args...);
-        for (LaneQueue& queue : queues_)
-            queue.download();
-        counter_buffer_.download(counters);
-    }
-
     Device& device_;
     ProgramLibrary library_;
     Needs needs_;
     SceneBuffers scene_;
-    Buffer frame_buffer_, sample_order_, counter_buffer_;
+    std::unique_ptr<Queues> buffers_;  // which queues_ refers to, however the bench is moved
     uint32_t plane_count_ = 0;
-    std::vector<LaneQueue> queues_;
+    std::map<std::string_view, LaneQueue> queues_;
 };
 
 }  // namespace obscura::test

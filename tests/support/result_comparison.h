@@ -4,6 +4,7 @@
 // (support/hit_comparison.h), of rho, of the texture coordinates.
 #pragma once
 
+#include "base/error.h"
 #include "scene/material.h"
 #include "scene/texture.h"
 #include "support/capture.h"

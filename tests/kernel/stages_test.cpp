@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of stages against the kernels: what a launch sets is what the kernel takes, a stage without work touches
+// nothing, and an item that points out of its queue is reported, not followed.
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "support/device.h"
+#include "support/kernel_queue.h"
+#include "support/scene_builder.h"
+
+namespace obscura {
+namespace {
+
+constexpr uint32_t CAPACITY = 4;
+constexpr uint32_t K = 3;
+
+class StageTable : public test::DeviceTest, public testing::WithParamInterface<std::string_view> {
+  protected:
+    static const StageInfo& row() { return *std::ranges::find(STAGES, GetParam(), &StageInfo::name); }
+    test::StageBench bench() {
+        test::SceneBuilder builder;
+        builder.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.material(test::matte(Rgb(0.5f))));
+        RenderSettings settings;
+        settings.width = 2;
+        settings.height = 2;
+        settings.obscurance_rays = K;
+        return {device(), builder.finish(), settings, CAPACITY};
+    }
+    // Item 0 of every queue points to this path slot and to this light sample's result.
+    static void point_to(test::StageBench& wave, uint32_t slot, uint32_t result) {
+        wave.rays().at(RAY_ORIGIN, 0).w = test::as_float(slot);
+        wave.points().at(POINT_POSITION, 0).w = test::as_float(slot);
+        wave.shadow_rays().at(SHADOW_ORIGIN, 0).w = test::as_float(result);
+    }
+};
+
+std::string parameter_name(const cl::Kernel& kernel, cl_uint index) {
+    std::string name;
+    EXPECT_EQ(kernel.getArgInfo(index, CL_KERNEL_ARG_NAME, &name), CL_SUCCESS);
+    return name.c_str();  // without the final zero
+}
+
+TEST_P(StageTable, NamesTheParametersOfTheKernelInTheirOrder) {
+    const cl::Kernel kernel = bench().kernel(row().stage);
+    cl_uint count = 0;
+    ASSERT_EQ(kernel.getInfo(CL_KERNEL_NUM_ARGS, &count), CL_SUCCESS);
+    ASSERT_LE(count, row().parameters.size());
+    for (cl_uint i = 0; i < row().parameters.size(); ++i)
+        EXPECT_EQ(row().parameters[i].name, i < count ? parameter_name(kernel, i) : "") << i;
+}
+
+TEST_P(StageTable, StageWithoutWorkTouchesNothing) {
+    test::StageBench wave = bench();
+    point_to(wave, 0, 0);
+    wave.start_path(0);
+    const auto before = wave.snapshot();
+    wave.run(row().stage, {});
+    EXPECT_EQ(wave.snapshot(), before);
+}
+
+TEST_P(StageTable, ProfileRowsBeginWithItsName) {
+    for (const std::string_view profile_row : row().rows)
+        EXPECT_TRUE(profile_row.starts_with(GetParam())) << profile_row;
+}
+
+TEST_P(StageTable, KernelAndTestBearItsName) {
+    const std::string root = OBSCURA_SOURCE_DIR;
+    const std::string name(GetParam());
+    EXPECT_TRUE(std::ifstream(root + "/kernels/" + name + ".cl")) << name;
+    EXPECT_TRUE(std::ifstream(root + "/tests/kernel/" + name + "_test.cpp")) << name;
+}
+
+std::vector<std::string_view> stage_names() {
+    std::vector<std::string_view> names;
+    for (const StageInfo& info : STAGES)
+        names.push_back(info.name);
+    return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Stages, StageTable, testing::ValuesIn(stage_names()),
+                         [](const auto& stage) { return std::string(stage.param); });
+
+class BadSlot : public StageTable {};
+
+// The slot of the one item lies just beyond the last.
+TEST_P(BadSlot, IsReportedNotFollowed) {
+    test::StageBench wave = bench();
+    point_to(wave, CAPACITY, CAPACITY * wave.light_samples);
+    wave.counters[COUNT_SHADOWS] = 1;
+    wave.counters[COUNT_POINTS] = 1;
+    const auto before = wave.snapshot();
+    wave.run(row().stage, {.count = 1});
+    EXPECT_EQ(wave.counters[STATUS_CODE], STATUS_BAD_SLOT);
+    EXPECT_EQ(wave.counters[STATUS_STAGE], static_cast<uint32_t>(row().stage));
+    EXPECT_EQ(wave.counters[STATUS_ITEM], 0u);
+    wave.counters[STATUS_CODE] = wave.counters[STATUS_STAGE] = STATUS_OK;
+    EXPECT_EQ(wave.snapshot(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Stages, BadSlot, testing::Values("shade", "shadow", "obscurance"),
+                         [](const auto& stage) { return std::string(stage.param); });
+
+}  // namespace
+}  // namespace obscura
