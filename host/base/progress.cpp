@@ -30,7 +30,7 @@ std::string three_digits(double value) {
 
 std::string rate_text(uint64_t count, double seconds, const std::string& unit) {
     const double rate = seconds > 0 ? static_cast<double>(count) / seconds : 0;
-    return fmt::format("{} {}/s", si_count(rate), unit);
+    return fmt::format("{} {}s/s", si_count(rate), unit);
 }
 
 std::string time_left_text(double fraction, double seconds) {
@@ -72,7 +72,7 @@ void Progress::finish(uint64_t count) {
     if (is_quiet() || std::exchange(finished_, true)) return;
     const double seconds = seconds_between(start_, Clock::now());
     fmt::print(stderr, "{}{}: {} {} in {}, {}\n", line_open_ ? ERASE_LINE : "", title_,
-               si_count(static_cast<double>(count)), unit_, duration_text(seconds),
+               si_count(static_cast<double>(count)), plural(count, unit_), duration_text(seconds),
                rate_text(count, seconds, unit_));
     line_open_ = false;
 }
@@ -88,8 +88,12 @@ void Progress::print_bar(double fraction, uint64_t count, double seconds) {
 
 void Progress::print_line(double fraction, uint64_t count, double seconds) {
     fmt::print(stderr, "{}: {:.0f} %, {} {}, {}, {}\n", title_, 100 * fraction,
-               si_count(static_cast<double>(count)), unit_, rate_text(count, seconds, unit_),
+               si_count(static_cast<double>(count)), plural(count, unit_), rate_text(count, seconds, unit_),
                time_left_text(fraction, seconds));
+}
+
+std::string plural(uint64_t count, const std::string& noun) {
+    return count == 1 ? noun : noun + "s";
 }
 
 std::string si_count(double value) {

@@ -11,7 +11,7 @@ namespace obscura {
 
 class Progress {
   public:
-    // title: what is being done ("render"); unit: what is counted ("rays").
+    // title: what is being done ("render"); unit: what is counted ("ray").
     Progress(std::string title, std::string unit);
     ~Progress();  // ends the bar's line
     Progress(const Progress&) = delete;
@@ -36,6 +36,8 @@ class Progress {
     Clock::time_point last_print_;
 };
 
+// The noun for so many of them: "ray", "rays".
+std::string plural(uint64_t count, const std::string& noun);
 // 1234567 -> "1.23 M": a count for people, four significant characters and an SI prefix.
 std::string si_count(double value);
 // 75.3 -> "1:15", 4.217 -> "4.22 s".

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/log.h"
+#include "base/progress.h"
 #include "cli/json_output.h"
 #include "cli/output_paths.h"
 #include "cli/validators.h"
@@ -76,7 +77,8 @@ void check_comparable(const CompareOptions& options, const Image& image, const I
 
 void warn_of_missing(const std::vector<std::string>& channels, const std::string& owner) {
     if (channels.empty()) return;
-    log_warning("Only {} has the channels {}; they are not compared.", owner, fmt::join(channels, " "));
+    log_warning("Only {} has the {} {}, left out of the comparison.", owner,
+                plural(channels.size(), "channel"), fmt::join(channels, " "));
 }
 
 // Drops all layers but the chosen one.

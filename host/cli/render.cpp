@@ -83,9 +83,9 @@ std::vector<std::string> resolve_layers(const std::vector<std::string>& wanted) 
 
 void print_summary(const RenderResult& result, const RunSeconds& seconds) {
     const double rays = static_cast<double>(result.rays.total());
-    log_info("{} rays in {}, {} rays/s (camera {}, shadow {}, glossy {}, obscurance {})", si_count(rays),
-             duration_text(result.seconds.render), si_count(rays / result.seconds.render),
-             si_count(static_cast<double>(result.rays.camera)),
+    log_info("{} {} in {}, {} rays/s (camera {}, shadow {}, glossy {}, obscurance {})", si_count(rays),
+             plural(result.rays.total(), "ray"), duration_text(result.seconds.render),
+             si_count(rays / result.seconds.render), si_count(static_cast<double>(result.rays.camera)),
              si_count(static_cast<double>(result.rays.shadow)),
              si_count(static_cast<double>(result.rays.glossy)),
              si_count(static_cast<double>(result.rays.obscurance)));
@@ -134,19 +134,19 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
     Device device = open_device(options.device);
     ProgramLibrary library(device, options.local_size);
     on_interrupt(handle_interrupt);
-    log_info("{}: {} triangles, {} objects; device {}", scene.name, scene.triangles.size(),
-             scene.objects.size(), device.name());
+    log_info("{}: {} {}, {} {}; device {}", scene.name, scene.triangles.size(),
+             plural(scene.triangles.size(), "triangle"), scene.objects.size(),
+             plural(scene.objects.size(), "object"), device.name());
     std::unique_ptr<Progress> progress;
     const RenderJob job{scene, settings, layers, queue_bytes, options.wave_size, options.portable};
-    const RenderResult result =
-        render_scene(device, library, job, [&](double fraction, const RayCounts& rays) {
-            if (!progress) {
-                seconds.first_wave = seconds_since(start);
-                progress = std::make_unique<Progress>("render", "rays");
-            }
-            progress->update(fraction, rays.total());
-            return !interrupted.load();
-        });
+    RenderResult result = render_scene(device, library, job, [&](double fraction, const RayCounts& rays) {
+        if (!progress) {
+            seconds.first_wave = seconds_since(start);
+            progress = std::make_unique<Progress>("render", "ray");
+        }
+        progress->update(fraction, rays.total());
+        return !interrupted.load();
+    });
     if (progress) progress->finish(result.rays.total());
     progress.reset();
 

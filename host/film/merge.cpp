@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "film/attributes.h"
 #include "film/image.h"
 
@@ -61,8 +62,9 @@ void check_partition(const std::vector<Image>& parts, const std::vector<std::str
     const auto missing = std::find(owners.begin(), owners.end(), NO_PART);
     if (missing == owners.end()) return;
     const size_t pixel = static_cast<size_t>(missing - owners.begin());
-    throw InputError("{}: the parts leave {} pixels of the picture empty, the first at ({}, {})", names[0],
-                     std::count(missing, owners.end(), NO_PART), pixel % width, pixel / width);
+    const auto count = static_cast<uint64_t>(std::count(missing, owners.end(), NO_PART));
+    throw InputError("{}: the parts leave {} {} of the picture empty, the first at ({}, {})", names[0], count,
+                     plural(count, "pixel"), pixel % width, pixel / width);
 }
 
 // Adds b to a if both are real numbers.

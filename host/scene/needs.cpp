@@ -2,6 +2,7 @@
 // What a render has to model, with the counts that are the reasons.
 #include "scene/needs.h"
 
+#include "base/progress.h"
 #include "scene/material.h"
 
 #include <fmt/format.h>
@@ -53,12 +54,11 @@ Counts count_features(const Scene& scene) {
 // "3 materials have a mirror lobe", "1 material has ...", "no material has ...".
 std::string having(uint32_t count, const std::string& noun, const std::string& what) {
     if (count == 0) return fmt::format("no {} has {}", noun, what);
-    return fmt::format("{} {}{} {} {}", count, noun, count == 1 ? "" : "s", count == 1 ? "has" : "have",
-                       what);
+    return fmt::format("{} {} {} {}", count, plural(count, noun), count == 1 ? "has" : "have", what);
 }
 
 std::string counted(uint32_t count, const std::string& noun) {
-    return fmt::format("{} {}{}", count == 0 ? "no" : std::to_string(count), noun, count == 1 ? "" : "s");
+    return fmt::format("{} {}", count == 0 ? "no" : std::to_string(count), plural(count, noun));
 }
 
 // The first reason that switches a feature off, or else the one given.

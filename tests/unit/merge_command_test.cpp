@@ -54,6 +54,13 @@ TEST_F(MergeCommand, WritesTheWholePicture) {
     EXPECT_EQ(read_exr(file("whole.exr")).layers[0].pixels, whole.layers[0].pixels);
 }
 
+TEST_F(MergeCommand, OnePartThatIsAllIsMerged) {
+    write_exr(make_image(10, 8, {0, 10, 0, 8}, LAYERS), file("all.exr"));
+    const auto result =
+        test::run_command(add_merge_command, {"merge", file("all.exr"), "-o", file("whole.exr")});
+    EXPECT_NE(result.err.find("Merged 1 part into"), std::string::npos) << result.err;
+}
+
 TEST_F(MergeCommand, PreviewAndExposureAreUsed) {
     merge(3, {"-o", file("a.exr"), "--preview", file("a.png")});
     merge(3, {"-o", file("b.exr"), "--preview", file("b.png"), "--exposure", "-8"});

@@ -49,6 +49,12 @@ class FakeTerminal {
     int master_ = -1;
 };
 
+TEST(Plural, IsForAllCountsButOne) {
+    EXPECT_EQ(plural(0, "ray"), "rays");
+    EXPECT_EQ(plural(1, "ray"), "ray");
+    EXPECT_EQ(plural(2, "ray"), "rays");
+}
+
 TEST(SiCount, HasThreeDigitsAndAPrefix) {
     EXPECT_EQ(si_count(0), "0");
     EXPECT_EQ(si_count(7), "7");
@@ -88,7 +94,7 @@ TEST(BytesText, UsesBinaryPrefixes) {
 TEST(Progress, OnATerminalDrawsABarAndThenTheTotal) {
     const FakeTerminal terminal;
     if (!terminal.is_open()) GTEST_SKIP() << "this system has no pseudo-terminals";
-    Progress progress("render", "rays");
+    Progress progress("render", "ray");
     progress.update(0.1, 100'000);  // too early for a bar
     std::this_thread::sleep_for(LONGER_THAN_BAR_PERIOD);
     progress.update(0.5, 1'000'000);
@@ -111,7 +117,7 @@ TEST(Progress, AnAbandonedBarEndsItsLine) {
     const FakeTerminal terminal;
     if (!terminal.is_open()) GTEST_SKIP() << "this system has no pseudo-terminals";
     {
-        Progress progress("render", "rays");
+        Progress progress("render", "ray");
         std::this_thread::sleep_for(LONGER_THAN_BAR_PERIOD);
         progress.update(0, 0);
     }
@@ -123,7 +129,7 @@ TEST(Progress, AnAbandonedBarEndsItsLine) {
 TEST(Progress, InALogPrintsPlainLines) {
     testing::internal::CaptureStderr();
     {
-        Progress progress("render", "rays");
+        Progress progress("render", "ray");
         std::this_thread::sleep_for(LONGER_THAN_BAR_PERIOD);
         progress.update(0.5, 1'000'000);  // lines come every few seconds only
         progress.finish(2'000'000);
@@ -134,11 +140,18 @@ TEST(Progress, InALogPrintsPlainLines) {
     EXPECT_EQ(log.find('\x1b'), std::string::npos) << log;
 }
 
+TEST(Progress, OneUnitIsSingular) {
+    testing::internal::CaptureStderr();
+    Progress("render", "ray").finish(1);
+    const std::string log = testing::internal::GetCapturedStderr();
+    EXPECT_EQ(log.find("render: 1 ray in "), 0u) << log;
+}
+
 TEST(Progress, QuietPrintsNothing) {
     set_quiet(true);
     testing::internal::CaptureStderr();
     {
-        Progress progress("render", "rays");
+        Progress progress("render", "ray");
         progress.update(0.5, 1);
         progress.finish(2);
     }
