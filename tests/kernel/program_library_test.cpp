@@ -271,10 +271,10 @@ TEST_F(ProgramLibraryOnDevice, WrongKernelNameIsADeviceError) {
         << message;
 }
 
+// Without a folder of its own: the process that dies, which starts from the test's beginning, would leave it behind.
 TEST_F(ProgramLibraryOnDevice, InexactArithmeticAborts) {
-    const KernelFolder folder;
     ProgramLibrary library(device());
-    EXPECT_DEATH(library.kernel("scale", "-cl-fast-relaxed-math"), "never built with");
+    EXPECT_DEATH(library.kernel("film", "-cl-fast-relaxed-math"), "never built with");
 }
 
 }  // namespace
