@@ -59,6 +59,7 @@ CLI::Option* add_rgb(CLI::App& command, const std::string& name, std::optional<R
                 value = Rgb(rgb[0], rgb[1], rgb[2]);
             },
             help)
+        ->check(not_empty())
         ->delimiter(',')
         ->expected(3)
         ->type_name("R,G,B");
@@ -164,6 +165,7 @@ void add_model_options(CLI::App& command, RenderOptions& o) {
     add_switch(command, "--roulette", s.roulette,
                "Follow weak reflections only now and then, with more weight")
         ->default_str("on")
+        ->check(not_empty())
         ->group(group);
 }
 

@@ -36,6 +36,14 @@ class Usage(unittest.TestCase):
         for seed in ("-1", "1.5", "inf", "abc", "", "99999999999999999999"):
             self.expect_message(["render", "scene", "-o", "x.exr", "--seed", seed], "--seed: .*is not a whole number")
 
+    def test_empty_names_are_refused(self):
+        for option in ("--camera", "--device"):
+            self.expect_message(["render", "scene", "-o", "x.exr", option, ""], f"{option}: a name is needed\n")
+
+    def test_empty_variable_names_no_device(self):
+        result = run("render", "no/such/scene", "-o", "x.exr", OBSCURA_DEVICE="")
+        self.assertIn("no such scene file or folder", result.stderr)
+
     def test_no_usable_device_is_a_failure(self):
         with tempfile.TemporaryDirectory() as empty:
             result = run("devices", OCL_ICD_VENDORS=empty)
