@@ -65,7 +65,7 @@ std::vector<std::string> all_layer_names() {
     return names;
 }
 
-// "all" and "none" stand for themselves; anything else must be in the table.
+// "all" and "none" stand for themselves, and beauty is there anyway; anything else must be in the table.
 std::vector<std::string> resolve_layers(const std::vector<std::string>& wanted) {
     std::vector<std::string> known = all_layer_names();
     if (wanted == std::vector<std::string>{"all"}) return known;
@@ -77,6 +77,7 @@ std::vector<std::string> resolve_layers(const std::vector<std::string>& wanted) 
                              fmt::join(known, ", "));
         }
         if (std::ranges::find(layers, name) == layers.end()) layers.push_back(name);
+        if (name == "beauty") continue;
     }
     return layers;
 }

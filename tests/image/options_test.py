@@ -173,6 +173,10 @@ class Options(unittest.TestCase):
         self.assertIn(result.returncode, (0, 1), result.stderr)
         return result.returncode == 1
 
+    def layers(self, name):
+        file = self.folder / f"{name}.exr"
+        return sorted(json.loads(obscura("compare", file, file, "--json", "-").stdout)["layers"])
+
     def stats(self, name):
         return json.loads((self.folder / f"{name}.json").read_text(encoding="utf-8"))
 
@@ -255,6 +259,14 @@ class Options(unittest.TestCase):
         self.render("no_layers", ["--layers", "none"])
         sizes = [(self.folder / f"{name}.exr").stat().st_size for name in ("no_layers", "base", "all_layers")]
         self.assertEqual(sizes, sorted(set(sizes)))
+
+    def test_beauty_is_a_layer_that_is_there_anyway(self):
+        self.render("none", ["--layers", "none"])
+        self.render("beauty", ["--layers", "beauty"])
+        self.render("beauty_z", ["--layers", "beauty,Z"])
+        self.assertEqual(["beauty"], self.layers("none"))
+        self.assertEqual(["beauty"], self.layers("beauty"))
+        self.assertEqual(["Z", "beauty"], self.layers("beauty_z"))
 
     def test_preview_and_exposure_write_pictures(self):
         self.render("dark", ["--preview", self.folder / "dark.png"])
