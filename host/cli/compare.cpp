@@ -81,15 +81,20 @@ void warn_of_missing(const std::vector<std::string>& channels, const std::string
                 plural(channels.size(), "channel"), fmt::join(channels, " "));
 }
 
-// Drops all layers but the chosen one.
+// Drops all layers but the chosen one. Beauty loses its name: it is compared whatever the two files call it.
 void keep_layer(Image& image, const std::string& title, const std::string& file) {
     std::vector<std::string> titles;
     for (const Layer& layer : image.layers)
         titles.push_back(layer.title());
-    std::erase_if(image.layers, [&](const Layer& layer) { return layer.title() != title; });
-    if (image.layers.empty()) {
+    const auto found = std::ranges::find(image.layers, title, &Layer::title);
+    const Layer* chosen = found != image.layers.end() ? &*found : nullptr;
+    if (chosen == nullptr && title == "beauty") chosen = image.beauty();
+    if (chosen == nullptr) {
         throw InputError("{}: it has no layer {}, only {}", file, title, fmt::join(titles, ", "));
     }
+    Layer kept = *chosen;
+    if (chosen == image.beauty()) kept.name.clear();
+    image.layers = {std::move(kept)};
 }
 
 Verdict judge(const CompareOptions& options, const Image& image, const Image& reference) {
@@ -106,8 +111,9 @@ Verdict judge(const CompareOptions& options, const Image& image, const Image& re
     // What only one has is beyond any bound, unless a layer was chosen: then what both have of it counts.
     verdict.within_bound = verdict.same_channels || (options.layer != ALL_LAYERS && options.bound > 0);
     const Metric metric = METRICS.at(options.metric);
+    const Layer* const beauty = reference.beauty();
     for (size_t i = 0; i < layers.size(); ++i) {
-        if (layers[i].title == "beauty") verdict.headline = i;
+        if (beauty != nullptr && layers[i].title == beauty->title()) verdict.headline = i;
         verdict.identical = verdict.identical && layers[i].identical;
         verdict.within_bound = verdict.within_bound && layers[i].is_within(metric, options.bound);
     }

@@ -15,17 +15,21 @@
 
 #include "base/log.h"
 #include "base/progress.h"
+#include "cli/choice_option.h"
 #include "cli/output_paths.h"
 #include "cli/picture_output.h"
 #include "cli/render_options.h"
 #include "cli/stats.h"
 #include "cli/validators.h"
+#include "film/blender_names.h"
 #include "film/develop.h"
 #include "scene/gltf.h"
 #include "wavefront/render.h"
 
 namespace obscura {
 namespace {
+
+enum class ExrNames { plain, blender };
 
 struct OutputOptions {
     std::string output;
@@ -35,6 +39,7 @@ struct OutputOptions {
                                     "specular.direct", "specular.ambient", "obscurance"};
     double exposure_stops = 0;
     bool half_color = false;
+    ExrNames names = ExrNames::plain;
 };
 
 std::atomic<bool> interrupted{false};
@@ -72,12 +77,12 @@ std::vector<std::string> resolve_layers(const std::vector<std::string>& wanted) 
     if (wanted == std::vector<std::string>{"none"}) return {};
     std::vector<std::string> layers;
     for (const std::string& name : wanted) {
+        if (name == "beauty") continue;
         if (std::ranges::find(known, name) == known.end()) {
             throw InputError("--layers {}: there is no such layer; choose from {}, or all, or none", name,
                              fmt::join(known, ", "));
         }
         if (std::ranges::find(layers, name) == layers.end()) layers.push_back(name);
-        if (name == "beauty") continue;
     }
     return layers;
 }
@@ -156,6 +161,7 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
         return ExitCode::interrupted;
     }
     on_interrupt(SIG_IGN);  // writing takes a moment; ended in its midst, it would leave temporary files
+    if (out.names == ExrNames::blender) use_blender_names(result.image);
     write_outputs(out, scene, device.info(), result, seconds, start);
     print_summary(result, seconds);
     if (result.complete) return ExitCode::ok;
@@ -189,6 +195,11 @@ void add_render_command(CLI::App& app, ExitCode& exit_code) {
         ->capture_default_str()
         ->group(group);
     command->add_flag("--exr-half", out->half_color, "Colours as 16-bit floats: half the file")->group(group);
+    add_choice<ExrNames>(*command, "--exr-names", out->names,
+                         {{"plain", ExrNames::plain}, {"blender", ExrNames::blender}},
+                         "Names of the EXR's channels: obscura's, or as in Blender's multi-layer EXRs")
+        ->default_str("plain")
+        ->group(group);
     command->add_option("--stats", out->stats, "Write the run's figures as JSON; - is standard output")
         ->type_name("FILE.json|-")
         ->group(group);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/render_options.h"
 
-#include <fmt/ranges.h>
-
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cctype>
@@ -13,6 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "cli/choice_option.h"
 #include "cli/validators.h"
 #include "sampling/lattice.h"
 
@@ -21,25 +20,6 @@ namespace {
 
 constexpr uint32_t MAX_IMAGE_SIZE = 65536;  // pixels per side
 constexpr uint32_t MAX_SAMPLES = 1u << 24;  // per pixel and per point: float counts them exactly
-
-template <typename Enum>
-CLI::Option* add_choice(CLI::App& command, const std::string& name, Enum& value,
-                        const std::map<std::string, Enum>& choices, const std::string& help) {
-    std::vector<std::string> words;
-    words.reserve(choices.size());
-    for (const auto& choice : choices)
-        words.push_back(choice.first);
-    // CLI::CheckedTransformer would show, and take, the numbers behind the words too.
-    const auto choose = [&value, name, choices, words](const std::string& text) {
-        const auto found = choices.find(CLI::detail::to_lower(text));
-        if (found == choices.end()) {
-            throw CLI::ValidationError(name, fmt::format("{}: choose from {}", text, fmt::join(words, ", ")));
-        }
-        value = found->second;
-    };
-    return command.add_option_function<std::string>(name, choose, help)
-        ->type_name(fmt::format("{}", fmt::join(words, "|")));
-}
 
 CLI::Option* add_switch(CLI::App& command, const std::string& name, bool& value, const std::string& help) {
     return add_choice<bool>(command, name, value, {{"on", true}, {"off", false}}, help);
@@ -59,7 +39,6 @@ CLI::Option* add_rgb(CLI::App& command, const std::string& name, std::optional<R
                 value = Rgb(rgb[0], rgb[1], rgb[2]);
             },
             help)
-        ->check(not_empty())
         ->delimiter(',')
         ->expected(3)
         ->type_name("R,G,B");
@@ -80,6 +59,7 @@ void add_image_options(CLI::App& command, RenderOptions& o) {
         ->capture_default_str()
         ->group("Picture");
     command.add_option("--camera", s.camera, "Name or number of the scene's camera; the first if not given")
+        ->check(not_empty())
         ->group("Picture");
     command
         .add_option_function<std::vector<double>>(
@@ -165,7 +145,6 @@ void add_model_options(CLI::App& command, RenderOptions& o) {
     add_switch(command, "--roulette", s.roulette,
                "Follow weak reflections only now and then, with more weight")
         ->default_str("on")
-        ->check(not_empty())
         ->group(group);
 }
 
@@ -186,6 +165,7 @@ void add_work_options(CLI::App& command, RenderOptions& o) {
         .add_option("--device", o.device,
                     "Index, platform:device, or part of the device's or platform's name or version (see "
                     "obscura devices)")
+        ->check(not_empty())
         ->envname("OBSCURA_DEVICE")
         ->group(group);
     command.add_option("--memory", o.memory, "Device memory for the queues: bytes, or with K, M, G")

@@ -77,26 +77,31 @@ size_t first_component(const std::string& name) {
 const std::vector<LayerInfo>& layer_table() {
     static const std::vector<std::string> rgb{"R", "G", "B"};
     static const std::vector<std::string> xyz{"X", "Y", "Z"};
+    // Blender's pass names (those of 2.80 to 4.5) where it has a pass of that content, our own elsewhere: its DiffDir, for
+    // one, is without the albedo that direct holds. Its Normal is the shading normal. AO is R, G and B: so Blender
+    // writes this grey pass, and readers ask for all three.
     static const std::vector<LayerInfo> table{
-        {LAYER_EMISSION, "emission", rgb, "lights and sky seen directly"},
-        {LAYER_DIRECT, "direct", rgb, "diffuse light straight from the lights"},
-        {LAYER_AMBIENT, "ambient", rgb, "R_d W I_A: the obscurances"},
-        {LAYER_SPECULAR_EMISSION, "specular.emission", rgb,
+        {LAYER_EMISSION, "emission", rgb, "Emit", rgb, "lights and sky seen directly"},
+        {LAYER_DIRECT, "direct", rgb, "Direct", rgb, "diffuse light straight from the lights"},
+        {LAYER_AMBIENT, "ambient", rgb, "Ambient", rgb, "R_d W I_A: the obscurances"},
+        {LAYER_SPECULAR_EMISSION, "specular.emission", rgb, "SpecularEmission", rgb,
          "lights and sky seen in reflections and through panes"},
-        {LAYER_SPECULAR_DIRECT, "specular.direct", rgb, "direct light seen in reflections and through panes"},
-        {LAYER_SPECULAR_AMBIENT, "specular.ambient", rgb,
+        {LAYER_SPECULAR_DIRECT, "specular.direct", rgb, "SpecularDirect", rgb,
+         "direct light seen in reflections and through panes"},
+        {LAYER_SPECULAR_AMBIENT, "specular.ambient", rgb, "SpecularAmbient", rgb,
          "obscurances seen in reflections and through panes"},
-        {LAYER_OBSCURANCE, "obscurance", rgb, "W at the first hit with a diffuse part"},
-        {LAYER_OBSCURANCE, "ao", {"Y"}, "colourless W of the same rays: 1 open, 0 closed"},
-        {LAYER_POSITION, "P", xyz, "position of the first hit, m"},
-        {LAYER_POSITION, "Z", {"Z"}, "distance along the camera's axis, m"},
-        {LAYER_NORMAL, "N", xyz, "geometric normal of the first hit, towards the camera"},
-        {LAYER_SHADING, "Ns", xyz, "shading normal of the first hit, towards the camera"},
-        {LAYER_UV, "u", {"u"}, "texture coordinate of the first hit"},
-        {LAYER_UV, "v", {"v"}, "texture coordinate of the first hit"},
-        {LAYER_ALBEDO, "Albedo", rgb, "diffuse + specular albedo of the first hit"},
-        {LAYER_VARIANCE, "Variance", rgb, "variance of the samples of a pixel"},
-        {LAYER_VARIANCE, "RelativeVariance", rgb, "that over the pixel's mean"},
+        {LAYER_OBSCURANCE, "obscurance", rgb, "Obscurance", rgb, "W at the first hit with a diffuse part"},
+        {LAYER_OBSCURANCE, "ao", {"Y"}, "AO", rgb, "colourless W of the same rays: 1 open, 0 closed"},
+        {LAYER_POSITION, "P", xyz, "Position", xyz, "position of the first hit, m"},
+        {LAYER_POSITION, "Z", {"Z"}, "Depth", {"Z"}, "distance along the camera's axis, m"},
+        {LAYER_NORMAL, "N", xyz, "GeometricNormal", xyz,
+         "geometric normal of the first hit, towards the camera"},
+        {LAYER_SHADING, "Ns", xyz, "Normal", xyz, "shading normal of the first hit, towards the camera"},
+        {LAYER_UV, "u", {"u"}, "UV", {"U"}, "texture coordinate of the first hit"},
+        {LAYER_UV, "v", {"v"}, "UV", {"V"}, "texture coordinate of the first hit"},
+        {LAYER_ALBEDO, "Albedo", rgb, "DiffCol", rgb, "diffuse + specular albedo of the first hit"},
+        {LAYER_VARIANCE, "Variance", rgb, "Variance", rgb, "variance of the samples of a pixel"},
+        {LAYER_VARIANCE, "RelativeVariance", rgb, "RelativeVariance", rgb, "that over the pixel's mean"},
     };
     return table;
 }

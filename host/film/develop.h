@@ -19,6 +19,8 @@ struct LayerInfo {
     uint32_t layer;  // LAYER_*
     const char* name;
     std::vector<std::string> channels;
+    const char* blender_pass;                   // of --exr-names blender
+    std::vector<std::string> blender_channels;  // those beyond the layer's own repeat its first
     const char* meaning;
 };
 const std::vector<LayerInfo>& layer_table();

@@ -41,4 +41,9 @@ const Layer* Image::find_layer(const std::string& name) const {
     return found == layers.end() ? nullptr : &*found;
 }
 
+const Layer* Image::beauty() const {
+    const Layer* const unnamed = find_layer("");
+    return unnamed != nullptr ? unnamed : find_layer(BLENDER_BEAUTY);
+}
+
 }  // namespace obscura

@@ -31,6 +31,9 @@ struct Layer {
     std::string title() const { return name.empty() ? "beauty" : name; }
 };
 
+// The beauty layer's name among Blender's names (film/blender_names.h).
+inline constexpr const char* BLENDER_BEAUTY = "ViewLayer.Combined";
+
 using Attribute = std::variant<std::string, double, int64_t, V3d, M44d>;
 
 // "0.5", "(1, 2, 3)": an attribute for messages.
@@ -48,6 +51,7 @@ struct Image {
     int32_t height() const { return y1 - y0; }
     size_t pixel_count() const { return static_cast<size_t>(width()) * static_cast<size_t>(height()); }
     const Layer* find_layer(const std::string& name) const;  // nullptr if there is none
+    const Layer* beauty() const;  // under either of its names; nullptr if there is none
 };
 
 // Float channels, ZIP-compressed scanlines, display window = the whole picture, data window = the part.

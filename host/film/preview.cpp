@@ -71,7 +71,7 @@ Rgb8 preview_color(const Rgb& radiance, float scale, int32_t x, int32_t y) {
 }
 
 void write_preview_png(const Image& image, const std::filesystem::path& path, double exposure_stops) {
-    const Layer* beauty = image.find_layer("");
+    const Layer* beauty = image.beauty();
     if (beauty == nullptr)
         throw InputError("{}: can't be written: the image has no beauty layer", path.string());
     const float scale = static_cast<float>(std::exp2(exposure_stops));

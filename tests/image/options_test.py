@@ -81,8 +81,9 @@ KEEPS_PICTURE = {
 # Each has its own test below.
 OTHERS = {
     "--width", "--height", "--cropwindow", "--layers", "--preview", "--exposure", "--stats", "--quiet", "--device",
-    "--output --outfile",
+    "--output --outfile", "--exr-names",
 }
+README = pathlib.Path(__file__).resolve().parents[2] / "README.md"
 
 
 def write_room(path):
@@ -267,6 +268,31 @@ class Options(unittest.TestCase):
         self.assertEqual(["beauty"], self.layers("none"))
         self.assertEqual(["beauty"], self.layers("beauty"))
         self.assertEqual(["Z", "beauty"], self.layers("beauty_z"))
+
+    def test_blender_names_are_those_of_the_readme(self):
+        rows = re.findall(r"^\| (?:`[\w.]+`|\(none\)) \|.*\| `(\w+)` \|", README.read_text(encoding="utf-8"), re.MULTILINE)
+        self.render("names", ["--exr-names", "blender", "--layers", "all", "--exr-half"])
+        self.assertEqual(sorted({f"ViewLayer.{name}" for name in rows}), self.layers("names"))
+
+    def test_blender_names_change_neither_pixels_nor_preview(self):
+        for name in ("plain", "blender"):
+            self.render(name, ["--exr-names", name, "--preview", self.folder / f"{name}.png"])
+        self.assertFalse(self.differs("plain"))
+        result = obscura("compare", self.folder / "blender.exr", self.base, "--layer", "beauty")
+        self.assertEqual(0, result.returncode, result.stdout + result.stderr)
+        self.assertEqual((self.folder / "plain.png").read_bytes(), (self.folder / "blender.png").read_bytes())
+
+    def test_crops_with_blender_names_are_merged_exactly(self):
+        names = ["--exr-names", "blender", "--layers", "all"]
+        self.render("whole", [*names, "--preview", self.folder / "whole.png"])
+        self.render("upper", [*names, "--cropwindow", "0,1,0,0.4"])
+        self.render("lower", [*names, "--cropwindow", "0,1,0.4,1"])
+        merged = obscura("merge", self.folder / "upper.exr", self.folder / "lower.exr", "-o", self.folder / "merged.exr",
+                         "--preview", self.folder / "merged.png")
+        self.assertEqual(0, merged.returncode, merged.stderr)
+        compared = obscura("compare", self.folder / "merged.exr", self.folder / "whole.exr")
+        self.assertEqual(0, compared.returncode, compared.stdout + compared.stderr)
+        self.assertEqual((self.folder / "whole.png").read_bytes(), (self.folder / "merged.png").read_bytes())
 
     def test_preview_and_exposure_write_pictures(self):
         self.render("dark", ["--preview", self.folder / "dark.png"])

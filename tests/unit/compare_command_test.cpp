@@ -123,6 +123,20 @@ TEST_F(CompareCommand, HeatMapShowsTheChosenLayer) {
     EXPECT_EQ(normals.at(0, 0), normals.at(1, 0));
 }
 
+TEST_F(CompareCommand, BeautyIsFoundAmongBlendersNames) {
+    image_.layers[0].name = BLENDER_BEAUTY;
+    const auto layer = compare({"--layer", "beauty", "--json", "-"});  // against the unnamed layer
+    EXPECT_EQ(nlohmann::json::parse(layer.out).at("max_abs"), 0.25);
+    reference_.layers[0].name = BLENDER_BEAUTY;
+    reference_.layers.push_back({"ViewLayer.AO", {"R"}, {0, 0}});  // stands before Combined in the file
+    image_.layers.push_back({"ViewLayer.AO", {"R"}, {1, 1}});
+    const auto all = nlohmann::json::parse(compare({"--json", "-", "--heatmap", file("all.png")}).out);
+    EXPECT_EQ(all.at("layer"), BLENDER_BEAUTY);
+    EXPECT_EQ(all.at("max_abs"), 0.25);
+    compare({"--layer", "beauty", "--heatmap", file("beauty.png")});
+    EXPECT_EQ(test::read_png(file("all.png")).rgba, test::read_png(file("beauty.png")).rgba);
+}
+
 TEST_F(CompareCommand, ImagesOfDifferentSizeOrCropAreRefused) {
     reference_ = make_row({{0, 0, 0}});
     EXPECT_INPUT_ERROR(compare(), "a.exr: it is 2 x 1 pixels, but ");

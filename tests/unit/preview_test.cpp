@@ -144,6 +144,14 @@ TEST(Preview, ALoneLuminanceIsGrey) {
     EXPECT_GT(r, 100);
 }
 
+TEST(Preview, BeautyIsFoundAmongBlendersNames) {
+    Image image = make_row({{0.1f, 0.2f, 0.3f}});
+    image.layers.insert(image.layers.begin(), {"ViewLayer.AO", {"R", "G", "B"}, {1, 1, 1}});
+    const auto pixel = preview(make_row({{0.1f, 0.2f, 0.3f}})).at(0, 0);
+    image.layers[1].name = BLENDER_BEAUTY;
+    EXPECT_EQ(preview(image).at(0, 0), pixel);
+}
+
 TEST(Preview, WhatCannotBeShownOrWrittenIsSaid) {
     const Image image = make_row({{0, 0, 0}});
     Image without_beauty = image;
