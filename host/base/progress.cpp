@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws the bar or prints the lines; all numbers for people are formatted here.
+// Draws the bar or prints the lines.
 #include "base/progress.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <string_view>
 #include <utility>
 
 #include "base/log.h"
+#include "base/units.h"
 
 namespace obscura {
 namespace {
@@ -21,12 +21,6 @@ constexpr std::chrono::milliseconds BAR_PERIOD{100};
 constexpr std::chrono::seconds LINE_PERIOD{5};  // a log of an hour stays under a thousand lines
 constexpr int BAR_WIDTH = 24;                   // the whole line stays within 80 columns
 constexpr std::string_view ERASE_LINE = "\r\x1b[K";
-
-// Three significant digits of a value below 1000.
-std::string three_digits(double value) {
-    const int decimals = value < 9.995 ? 2 : value < 99.95 ? 1 : 0;
-    return fmt::format("{:.{}f}", value, decimals);
-}
 
 std::string rate_text(uint64_t count, double seconds, const std::string& unit) {
     const double rate = seconds > 0 ? static_cast<double>(count) / seconds : 0;
@@ -90,37 +84,6 @@ void Progress::print_line(double fraction, uint64_t count, double seconds) {
     fmt::print(stderr, "{}: {:.0f} %, {} {}, {}, {}\n", title_, 100 * fraction,
                si_count(static_cast<double>(count)), plural(count, unit_), rate_text(count, seconds, unit_),
                time_left_text(fraction, seconds));
-}
-
-std::string plural(uint64_t count, const std::string& noun) {
-    return count == 1 ? noun : noun + "s";
-}
-
-std::string si_count(double value) {
-    constexpr std::array PREFIXES = {"", " k", " M", " G", " T", " P", " E"};
-    size_t prefix = 0;
-    for (; std::abs(value) >= 999.5 && prefix + 1 < PREFIXES.size(); ++prefix)
-        value /= 1000;
-    const bool exact = prefix == 0 && value == std::floor(value);
-    return (exact ? fmt::format("{:.0f}", value) : three_digits(value)) + PREFIXES[prefix];
-}
-
-std::string duration_text(double seconds) {
-    if (seconds < 0.9995) return three_digits(seconds * 1000) + " ms";
-    if (seconds < 59.95) return three_digits(seconds) + " s";
-    if (!std::isfinite(seconds)) return "unlimited time";
-    const int64_t whole = std::llround(seconds);
-    if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
-    return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
-}
-
-std::string bytes_text(uint64_t bytes) {
-    constexpr std::array PREFIXES = {"B", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
-    double value = static_cast<double>(bytes);
-    size_t prefix = 0;
-    for (; value >= 1023.95 && prefix + 1 < PREFIXES.size(); ++prefix)
-        value /= 1024;
-    return fmt::format("{:.4g} {}", value, PREFIXES[prefix]);
 }
 
 }  // namespace obscura

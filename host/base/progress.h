@@ -36,13 +36,4 @@ class Progress {
     Clock::time_point last_print_;
 };
 
-// The noun for so many of them: "ray", "rays".
-std::string plural(uint64_t count, const std::string& noun);
-// 1234567 -> "1.23 M": a count for people, four significant characters and an SI prefix.
-std::string si_count(double value);
-// 75.3 -> "1:15", 4.217 -> "4.22 s".
-std::string duration_text(double seconds);
-// 1536 -> "1.5 KiB".
-std::string bytes_text(uint64_t bytes);
-
 }  // namespace obscura

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "base/log.h"
-#include "base/progress.h"
+#include "base/units.h"
 #include "cli/json_output.h"
 #include "cli/output_paths.h"
 #include "cli/validators.h"

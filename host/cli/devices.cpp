@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-#include "base/progress.h"
+#include "base/units.h"
 #include "cli/json_output.h"
 #include "device/selector.h"
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <string>
 
-#include "base/progress.h"
+#include "base/units.h"
 #include "cli/json_output.h"
 #include "scene/gltf.h"
 #include "scene/material.h"
@@ -127,8 +127,7 @@ void print_geometry(const SceneInfo& info) {
     fmt::print("{}\n\nGeometry\n", info.file);
     print_row("triangles", "{}", scene.triangles.size());
     if (scene.dropped_triangles > 0)
-        print_row("dropped", "{} {} without area", scene.dropped_triangles,
-                  plural(scene.dropped_triangles, "triangle"));
+        print_row("dropped", "{} without area", counted(scene.dropped_triangles, "triangle"));
     print_row("vertices", "{}", scene.vertices.size());
     print_row("objects", "{}", scene.objects.size());
     print_row("materials", "{}", scene.materials.size());
@@ -142,8 +141,7 @@ void print_geometry(const SceneInfo& info) {
 
 void print_lights(const SceneInfo& info) {
     fmt::print("\nLights\n");
-    print_row("area lights", "{} {}", info.emissive_triangles,
-              plural(info.emissive_triangles, "emissive triangle"));
+    print_row("area lights", "{}", counted(info.emissive_triangles, "emissive triangle"));
     for (const PunctualLight& light : info.scene.lights) {
         const char* unit = light.type == LightType::directional ? "W/m^2" : "W/sr";
         print_row(

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/log.h"
-#include "base/progress.h"
+#include "base/units.h"
 #include "cli/output_paths.h"
 #include "cli/validators.h"
 #include "film/image.h"
@@ -32,8 +32,8 @@ ExitCode run_merge(const MergeOptions& options) {
     const Image merged = merge_images(parts, options.parts);
     write_exr(merged, options.output);
     if (!options.preview.empty()) write_preview_png(merged, options.preview, options.exposure_stops);
-    log_info("Merged {} {} into {} ({} x {} pixels).", parts.size(), plural(parts.size(), "part"),
-             options.output, merged.full_width, merged.full_height);
+    log_info("Merged {} into {} ({} x {} pixels).", counted(parts.size(), "part"), options.output,
+             merged.full_width, merged.full_height);
     return ExitCode::ok;
 }
 

@@ -15,6 +15,7 @@
 
 #include "base/log.h"
 #include "base/progress.h"
+#include "base/units.h"
 #include "cli/choice_option.h"
 #include "cli/output_paths.h"
 #include "cli/picture_output.h"
@@ -140,9 +141,8 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
     Device device = open_device(options.device);
     ProgramLibrary library(device, options.local_size);
     on_interrupt(handle_interrupt);
-    log_info("{}: {} {}, {} {}; device {}", scene.name, scene.triangles.size(),
-             plural(scene.triangles.size(), "triangle"), scene.objects.size(),
-             plural(scene.objects.size(), "object"), device.name());
+    log_info("{}: {}, {}; device {}", scene.name, counted(scene.triangles.size(), "triangle"),
+             counted(scene.objects.size(), "object"), device.name());
     std::unique_ptr<Progress> progress;
     const RenderJob job{scene, settings, layers, queue_bytes, options.wave_size, options.portable};
     RenderResult result = render_scene(device, library, job, [&](double fraction, const RayCounts& rays) {

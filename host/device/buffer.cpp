@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/progress.h"
+#include "base/units.h"
 #include "device/error.h"
 
 namespace obscura {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "base/progress.h"
+#include "base/units.h"
 #include "device/opencl.h"
 
 namespace obscura {
@@ -99,7 +99,7 @@ void check(int32_t code, const char* call, std::string_view stage, std::string_v
            std::optional<uint64_t> item_count) {
     if (code == CL_SUCCESS) return;
     std::string message = fmt::format("{}: {} failed with {} ({})", stage, call, error_name(code), code);
-    if (item_count) message += fmt::format(" for {} {}", *item_count, plural(*item_count, "item"));
+    if (item_count) message += fmt::format(" for {}", counted(*item_count, "item"));
     if (!device.empty()) message += fmt::format(" on {}", device);
     throw DeviceError("{}.", message);
 }

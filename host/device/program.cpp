@@ -23,7 +23,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "base/progress.h"
+#include "base/units.h"
 #include "device/error.h"
 #include "device/kernel_source.h"
 #include "device/warm_up.h"

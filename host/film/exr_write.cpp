@@ -22,7 +22,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/log.h"
-#include "base/progress.h"
+#include "base/units.h"
 #include "film/attributes.h"
 #include "film/exr.h"
 #include "film/image.h"
@@ -114,9 +114,9 @@ std::vector<half> to_half(const Layer& layer, const std::filesystem::path& path)
     }
     if (overflow_count > 0) {
         log_warning(
-            "{}: in the layer {}, {} {} beyond 65504, the largest half, became infinite; float channels keep "
+            "{}: in the layer {}, {} beyond 65504, the largest half, became infinite; float channels keep "
             "such values.",
-            path.string(), layer.title(), overflow_count, plural(overflow_count, "value"));
+            path.string(), layer.title(), counted(overflow_count, "value"));
     }
     return halves;
 }

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/progress.h"
+#include "base/units.h"
 #include "film/attributes.h"
 #include "film/image.h"
 
@@ -63,8 +63,8 @@ void check_partition(const std::vector<Image>& parts, const std::vector<std::str
     if (missing == owners.end()) return;
     const size_t pixel = static_cast<size_t>(missing - owners.begin());
     const auto count = static_cast<uint64_t>(std::count(missing, owners.end(), NO_PART));
-    throw InputError("{}: the parts leave {} {} of the picture empty, the first at ({}, {})", names[0], count,
-                     plural(count, "pixel"), pixel % width, pixel / width);
+    throw InputError("{}: the parts leave {} of the picture empty, the first at ({}, {})", names[0],
+                     counted(count, "pixel"), pixel % width, pixel / width);
 }
 
 // Adds b to a if both are real numbers.

@@ -3,7 +3,7 @@
 #include "scene/gltf.h"
 
 #include "base/log.h"
-#include "base/progress.h"
+#include "base/units.h"
 #include "scene/gltf_reader.h"
 
 #include <algorithm>
@@ -86,8 +86,8 @@ Scene load_gltf(const std::filesystem::path& file) {
     Scene& scene = reader.scene;
     scene.bounds = used_bounds(scene);
     if (scene.dropped_triangles > 0)
-        log_warning("{}: {} {} without area dropped.", reader.file, scene.dropped_triangles,
-                    plural(scene.dropped_triangles, "triangle"));
+        log_warning("{}: {} without area dropped.", reader.file,
+                    counted(scene.dropped_triangles, "triangle"));
     if (scene.triangles.empty()) log_warning("{}: the scene holds no triangles.", reader.file);
     if (scene.cameras.empty()) {
         scene.cameras.push_back(default_camera(scene.bounds));

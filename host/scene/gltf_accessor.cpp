@@ -2,6 +2,8 @@
 // Bounds checks and component conversion of accessors: glTF 2.0 specification, sections 3.6 and 5.1.
 #include "scene/gltf_accessor.h"
 
+#include "base/units.h"
+
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -89,18 +91,20 @@ AccessorView::Region AccessorView::checked_region(const GltfReader& reader, cons
                     reader.model.buffers.size());
     const auto& data = reader.model.buffers[static_cast<size_t>(view.buffer)].data;
     if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
-        reader.fail(place, "buffer view {} ends at byte {} + {}, but its buffer has {} bytes.", view_index,
-                    view.byteOffset, view.byteLength, data.size());
+        reader.fail(place, "buffer view {} ends at byte {} + {}, but its buffer has {}.", view_index,
+                    view.byteOffset, view.byteLength, counted(data.size(), "byte"));
     const size_t stride = view.byteStride == 0 ? element_bytes : view.byteStride;
     if (stride < element_bytes)
-        reader.fail(place, "elements of {} bytes overlap at a stride of {}.", element_bytes, stride);
+        reader.fail(place, "elements of {} overlap at a stride of {}.", counted(element_bytes, "byte"),
+                    stride);
     // Written so that nothing can overflow: count * stride + element_bytes <= available.
     const size_t available = view.byteLength - std::min(offset, view.byteLength);
     const bool fits =
         count == 0 || (available >= element_bytes && (available - element_bytes) / stride >= count - 1);
     if (offset > view.byteLength || !fits)
-        reader.fail(place, "{} elements of {} bytes from byte {} do not fit buffer view {} of {} bytes.",
-                    count, element_bytes, offset, view_index, view.byteLength);
+        reader.fail(place, "buffer view {} of {} has no room for {} of {} from byte {}.", view_index,
+                    counted(view.byteLength, "byte"), counted(count, "element"),
+                    counted(element_bytes, "byte"), offset);
     return {data.data() + view.byteOffset + offset, stride};
 }
 
@@ -123,7 +127,7 @@ void AccessorView::read_sparse(const GltfReader& reader, const std::string& plac
         const uint32_t element =
             load_unsigned(sparse.indices.componentType, indices.data + i * indices.stride);
         if (element >= count_)
-            reader.fail(place, "sparse index {} is outside its {} elements.", element, count_);
+            reader.fail(place, "sparse index {} is outside its {}.", element, counted(count_, "element"));
         sparse_[element] = values.data + i * values.stride;
     }
 }

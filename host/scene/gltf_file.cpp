@@ -3,6 +3,7 @@
 // end), recurses without limit, expands shell syntax in URIs and looks for resources in the current folder
 // too; the checks and callbacks here take that away.
 #include "base/file.h"
+#include "base/units.h"
 #include "scene/gltf_reader.h"
 
 #include <cstring>
@@ -49,8 +50,8 @@ size_t check_glb(const std::string& file, const std::vector<std::byte>& bytes) {
             throw InputError("{}: chunk {}: its header is cut off.", file, chunk_count);
         const size_t chunk_bytes = load_u32(bytes, offset);
         if (chunk_bytes > length - offset - GLB_CHUNK_HEADER_BYTES)
-            throw InputError("{}: chunk {}: its {} bytes reach past the end of the file.", file, chunk_count,
-                             chunk_bytes);
+            throw InputError("{}: chunk {}: with its {} it reaches past the end of the file.", file,
+                             chunk_count, counted(chunk_bytes, "byte"));
         if (chunk_count == 0) {
             if (load_u32(bytes, offset + 4) != GLB_CHUNK_JSON)
                 throw InputError("{}: chunk 0: it is not the JSON chunk.", file);

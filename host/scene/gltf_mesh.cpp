@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Meshes: primitives of triangles, strips or fans, transformed to world space in double. Only vertices that
 // some triangle uses are kept. Triangles without area are dropped and counted.
+#include "base/units.h"
 #include "scene/gltf_accessor.h"
 
 #include <algorithm>
@@ -38,7 +39,7 @@ class PrimitiveReader {
 
     uint32_t use_vertex(uint32_t index) {
         if (index >= vertex_count())
-            reader_.fail(place_, "index {} is outside its {} vertices.", index, vertex_count());
+            reader_.fail(place_, "index {} is outside its {}.", index, counted(vertex_count(), "position"));
         uint32_t& slot = scene_index_[index];
         if (slot == UNUSED) {
             auto& vertices = reader_.scene.vertices;
@@ -60,7 +61,8 @@ class PrimitiveReader {
             result.component_type() == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
             reader_.fail(where, "its accessor {} has the wrong type.", found->second);
         if (positions_ && result.count() != positions_->count())
-            reader_.fail(where, "it has {} elements for {} positions.", result.count(), positions_->count());
+            reader_.fail(where, "it has {} for {}.", counted(result.count(), "element"),
+                         counted(positions_->count(), "position"));
         return result;
     }
 
@@ -139,7 +141,8 @@ size_t corner_index(int mode, size_t t, size_t k) {
 
 size_t triangle_count(const GltfReader& reader, const std::string& place, int mode, size_t corner_count) {
     if (mode != TINYGLTF_MODE_TRIANGLES) return corner_count < 3 ? 0 : corner_count - 2;
-    if (corner_count % 3 != 0) reader.fail(place, "{} corners do not make whole triangles.", corner_count);
+    if (corner_count % 3 != 0)
+        reader.fail(place, "its corner count {} is no multiple of three.", corner_count);
     return corner_count / 3;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One warning per kind of thing that the file holds and obscura does not render.
 #include "base/log.h"
-#include "base/progress.h"
+#include "base/units.h"
 #include "scene/gltf_reader.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ void Notices::add(const std::string& what, const std::string& unit) {
 
 void Notices::print(const std::string& file) const {
     for (const Notice& notice : notices_)
-        log_warning("{}: {} ({} {}).", file, notice.what, notice.count, plural(notice.count, notice.unit));
+        log_warning("{}: {} ({}).", file, notice.what, counted(notice.count, notice.unit));
 }
 
 std::string gltf_place(const char* kind, const std::string& name, size_t index) {

@@ -2,7 +2,7 @@
 // What a render has to model, with the counts that are the reasons.
 #include "scene/needs.h"
 
-#include "base/progress.h"
+#include "base/units.h"
 #include "scene/material.h"
 
 #include <fmt/format.h>
@@ -54,11 +54,11 @@ Counts count_features(const Scene& scene) {
 // "3 materials have a mirror lobe", "1 material has ...", "no material has ...".
 std::string having(uint32_t count, const std::string& noun, const std::string& what) {
     if (count == 0) return fmt::format("no {} has {}", noun, what);
-    return fmt::format("{} {} {} {}", count, plural(count, noun), count == 1 ? "has" : "have", what);
+    return fmt::format("{} {} {}", counted(count, noun), count == 1 ? "has" : "have", what);
 }
 
-std::string counted(uint32_t count, const std::string& noun) {
-    return fmt::format("{} {}", count == 0 ? "no" : std::to_string(count), plural(count, noun));
+std::string counted_or_no(uint32_t count, const std::string& noun) {
+    return count == 0 ? "no " + plural(0, noun) : counted(count, noun);
 }
 
 // The first reason that switches a feature off, or else the one given.
@@ -110,7 +110,7 @@ std::vector<Need> find_reasons(const Counts& counts, const RenderSettings& setti
         settings.specular ? "--no-direct, and no rough specular lobe" : "--no-direct and --no-specular";
     const std::string no_ambient = settings.obscurance ? "--ambient none" : "--no-obscurance";
     const auto light = [&](uint32_t count, const char* noun) {
-        return unless(no_samples, no_sampling, counted(count, noun));
+        return unless(no_samples, no_sampling, counted_or_no(count, noun));
     };
     return {
         {"textures", needs.textures, having(counts.textured, "material", "a base colour texture")},
@@ -127,7 +127,7 @@ std::vector<Need> find_reasons(const Counts& counts, const RenderSettings& setti
         {"directional_lights", needs.directional_lights, light(counts.directionals, "directional light")},
         {"emission", needs.emission,
          counts.unlit > 0 ? fmt::format("{} emissive and {} unlit materials", counts.emissive, counts.unlit)
-                          : counted(counts.emissive, "emissive material")},
+                          : counted_or_no(counts.emissive, "emissive material")},
         {"background", needs.background,
          needs.background ? "rays that leave the scene see a sky" : "rays that leave the scene see black"},
         {"bleeding", needs.bleeding,

@@ -2,7 +2,7 @@
 #include "wavefront/plan.h"
 
 #include "base/error.h"
-#include "base/progress.h"
+#include "base/units.h"
 #include "shared/wavefront.h"
 
 #include <algorithm>

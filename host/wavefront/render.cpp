@@ -9,7 +9,7 @@
 #include <future>
 
 #include "base/error.h"
-#include "base/progress.h"
+#include "base/units.h"
 #include "bvh/bvh.h"
 #include "film/develop.h"
 #include "sampling/sample_order.h"
@@ -68,9 +68,9 @@ void check_picture_memory(const PixelRect& rect, const std::vector<std::string>&
     const uint64_t bytes = rect.pixel_count() * (channels * sizeof(float) + film_planes * sizeof(f32x4));
     if (bytes <= physical_memory_bytes()) return;
     throw InputError(
-        "{} x {} pixels with {} {} take {} of memory, and this machine has {}; render fewer pixels "
+        "{} x {} pixels with {} take {} of memory, and this machine has {}; render fewer pixels "
         "(--cropwindow) or layers (--layers)",
-        rect.width(), rect.height(), names.size() + 1, plural(names.size() + 1, "layer"), bytes_text(bytes),
+        rect.width(), rect.height(), counted(names.size() + 1, "layer"), bytes_text(bytes),
         bytes_text(physical_memory_bytes()));
 }
 

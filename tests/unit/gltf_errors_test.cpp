@@ -48,7 +48,7 @@ TEST(GltfErrors, BrokenContainerSaysWhere) {
     EXPECT_CONTAINS(error_of_bytes(bytes), "version 1");
     bytes = good;
     bytes[14] = 0xff;  // length of the JSON chunk
-    EXPECT_CONTAINS(error_of_bytes(bytes), "chunk 0: its");
+    EXPECT_CONTAINS(error_of_bytes(bytes), "chunk 0: with its");
     bytes = good;
     bytes[16] = 'j';
     EXPECT_CONTAINS(error_of_bytes(bytes), "chunk 0: it is not the JSON chunk");
@@ -56,7 +56,7 @@ TEST(GltfErrors, BrokenContainerSaysWhere) {
     bytes = good;
     const auto json_bytes = static_cast<size_t>(bytes[12] | bytes[13] << 8);
     bytes[20 + json_bytes] = static_cast<uint8_t>(bytes[20 + json_bytes] + 8);
-    EXPECT_CONTAINS(error_of_bytes(bytes), "chunk 1: its 44 bytes reach past the end");
+    EXPECT_CONTAINS(error_of_bytes(bytes), "chunk 1: with its 44 bytes it reaches past the end");
 }
 
 TEST(GltfErrors, JsonErrorsAreRefused) {
@@ -96,12 +96,13 @@ TEST(GltfErrors, AccessorsMustFitTheirBuffers) {
         file.json[list][0][key] = value;
         return error_of(file);
     };
-    EXPECT_CONTAINS(change("accessors", "count", 4), place + "4 elements of 12 bytes from byte 0 do not fit");
+    EXPECT_CONTAINS(change("accessors", "count", 4),
+                    place + "buffer view 0 of 36 bytes has no room for 4 elements of 12 bytes from byte 0");
     EXPECT_CONTAINS(change("accessors", "byteOffset", 4),
-                    place + "3 elements of 12 bytes from byte 4 do not fit");
-    EXPECT_CONTAINS(change("accessors", "byteOffset", 18446744073709551612u), "do not fit");
+                    place + "buffer view 0 of 36 bytes has no room for 3 elements of 12 bytes from byte 4");
+    EXPECT_CONTAINS(change("accessors", "byteOffset", 18446744073709551612u), "has no room for");
     EXPECT_CONTAINS(change("accessors", "count", 4294967296u), "more than 32-bit indices reach");
-    EXPECT_CONTAINS(change("accessors", "count", 4294967295u), "do not fit");
+    EXPECT_CONTAINS(change("accessors", "count", 4294967295u), "has no room for");
     EXPECT_CONTAINS(change("accessors", "bufferView", 7),
                     place + "buffer view 7 does not exist; the file has 1");
     EXPECT_CONTAINS(change("accessors", "componentType", 5124), "component type 5124 is not one of glTF's");
@@ -112,7 +113,8 @@ TEST(GltfErrors, AccessorsMustFitTheirBuffers) {
     EXPECT_CONTAINS(change("bufferViews", "byteOffset", 18446744073709551615u),
                     "but its buffer has 36 bytes");
     EXPECT_CONTAINS(change("bufferViews", "byteStride", 8), "elements of 12 bytes overlap at a stride of 8");
-    EXPECT_CONTAINS(change("bufferViews", "byteStride", 20), "do not fit");
+    EXPECT_CONTAINS(change("bufferViews", "byteStride", 20), "has no room for");
+    EXPECT_CONTAINS(change("bufferViews", "byteLength", 1), "buffer view 0 of 1 byte has no room");
     GltfBuilder file = triangle();
     file.json["accessors"][0].erase("bufferView");
     EXPECT_CONTAINS(error_of(file), "it has no buffer view");
@@ -128,7 +130,7 @@ TEST(GltfErrors, SparseDataIsChecked) {
         (*part == '\0' ? sparse : sparse[part])[key] = value;
         return error_of(file);
     };
-    EXPECT_CONTAINS(change("", "count", 2), "do not fit");
+    EXPECT_CONTAINS(change("", "count", 2), "has no room for");
     EXPECT_CONTAINS(change("", "count", -1), "negative count");
     EXPECT_CONTAINS(change("indices", "byteOffset", -4), "negative count or offset");
     EXPECT_CONTAINS(change("indices", "componentType", 5126), "not an unsigned integer");
@@ -195,9 +197,9 @@ TEST(GltfErrors, IndicesMustBeInRangeAndWhole) {
     };
     GltfBuilder out_of_range, fraction, real, vectors;
     EXPECT_CONTAINS(with_indices(out_of_range, out_of_range.accessor<uint16_t>({0, 1, 3}, "SCALAR")),
-                    "mesh 'thing' primitive 0: index 3 is outside its 3 vertices");
+                    "mesh 'thing' primitive 0: index 3 is outside its 3 positions");
     EXPECT_CONTAINS(with_indices(fraction, fraction.accessor<uint16_t>({0, 1, 2, 0}, "SCALAR")),
-                    "4 corners do not make whole triangles");
+                    "its corner count 4 is no multiple of three");
     EXPECT_CONTAINS(with_indices(real, real.accessor<float>({0, 1, 2}, "SCALAR")),
                     "must be unsigned integers");
     EXPECT_CONTAINS(with_indices(vectors, vectors.accessor<uint16_t>({0, 1, 2, 0}, "VEC2")),
