@@ -5,43 +5,44 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/units.h"
 #include "device/error.h"
 
 namespace obscura {
 namespace {
 
-void set_arguments(const LaunchPlace& place, std::span<const LaunchArgument> arguments) {
+void set_arguments(const Launch& run, std::span<const LaunchArgument> arguments) {
     cl_uint expected = 0;
-    check(clGetKernelInfo(place.kernel(), CL_KERNEL_NUM_ARGS, sizeof(expected), &expected, nullptr),
-          "clGetKernelInfo", place.stage, place.device.name());
+    check(clGetKernelInfo(run.kernel(), CL_KERNEL_NUM_ARGS, sizeof(expected), &expected, nullptr),
+          "clGetKernelInfo", run.stage, run.device.name());
     OBSCURA_CHECK(expected == arguments.size(), "stage {}: the kernel takes {} arguments, {} are given",
-                  place.stage, expected, arguments.size());
+                  run.stage, expected, arguments.size());
     for (cl_uint index = 0; index < expected; ++index) {
         const LaunchArgument& argument = arguments[index];
-        OBSCURA_CHECK(argument.is_set(), "stage {}: argument {} is a buffer without memory", place.stage,
+        OBSCURA_CHECK(argument.is_set(), "stage {}: argument {} is a buffer without memory", run.stage,
                       index);
-        const cl_int code = clSetKernelArg(place.kernel(), index, argument.bytes(), argument.value());
+        const cl_int code = clSetKernelArg(run.kernel(), index, argument.bytes(), argument.value());
         if (code != CL_SUCCESS)
-            throw DeviceError("{}: clSetKernelArg of argument {} ({} bytes) failed with {} ({}) on {}.",
-                              place.stage, index, argument.bytes(), error_name(code), code,
-                              place.device.name());
+            throw DeviceError("{}: clSetKernelArg of argument {} ({}) failed with {} ({}) on {}.", run.stage,
+                              index, counted(argument.bytes(), "byte"), error_name(code), code,
+                              run.device.name());
     }
 }
 
 }  // namespace
 
-cl::Event launch(const LaunchPlace& place, uint32_t local_size, std::span<const LaunchArgument> arguments) {
-    set_arguments(place, arguments);
-    OBSCURA_CHECK(place.item_count > 0 && local_size > 0, "stage {}: {} items in groups of {}", place.stage,
-                  place.item_count, local_size);
-    const uint64_t wanted = std::max(place.item_count, place.device.smallest_grid());
-    const uint64_t group_count = (wanted + local_size - 1) / local_size;
-    const size_t global = group_count * local_size;
-    const size_t local = local_size;
+cl::Event launch(const Launch& run, std::span<const LaunchArgument> arguments) {
+    set_arguments(run, arguments);
+    OBSCURA_CHECK(run.item_count > 0 && run.local_size > 0, "stage {}: {} items in groups of {}", run.stage,
+                  run.item_count, run.local_size);
+    const uint64_t wanted = std::max(run.item_count, run.device.smallest_grid());
+    const uint64_t group_count = (wanted + run.local_size - 1) / run.local_size;
+    const size_t global = group_count * run.local_size;
+    const size_t local = run.local_size;
     cl_event event = nullptr;
-    check(clEnqueueNDRangeKernel(place.device.queue()(), place.kernel(), 1, nullptr, &global, &local, 0,
-                                 nullptr, &event),
-          "clEnqueueNDRangeKernel", place.stage, place.device.name(), place.item_count);
+    check(clEnqueueNDRangeKernel(run.device.queue()(), run.kernel(), 1, nullptr, &global, &local, 0, nullptr,
+                                 &event),
+          "clEnqueueNDRangeKernel", run.stage, run.device.name(), run.item_count);
     return cl::Event(event);  // takes over the reference that the call gave
 }
 

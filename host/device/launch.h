@@ -19,18 +19,22 @@ struct LocalMemory {
 };
 
 // What a kernel parameter is set to: a buffer, local memory, or by value a number or a plain struct of kernels/shared. It
-// refers to what it was made from, which has to live until launch() returns.
+// refers to the buffer or value that it was made from, which has to live until launch() returns.
 class LaunchArgument {
   public:
     explicit LaunchArgument(const Buffer& buffer)
         : value_(&buffer.handle()()), bytes_(sizeof(cl_mem)), is_set_(buffer.handle()() != nullptr) {}
-    explicit LaunchArgument(const LocalMemory& local) : bytes_(local.bytes) {}
-    // A value as its bytes. A size that differs from the kernel's is refused by launch().
-    explicit LaunchArgument(std::span<const std::byte> value) : value_(value.data()), bytes_(value.size()) {}
+    explicit LaunchArgument(LocalMemory local) : LaunchArgument(nullptr, local.bytes) {}
     template <typename T>
-    explicit LaunchArgument(const T& value) : value_(&value), bytes_(sizeof(T)) {
+    explicit LaunchArgument(const T& value) : LaunchArgument(&value, sizeof(T)) {
         static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T> && !std::is_same_v<T, bool>,
                       "kernel arguments are buffers, local memory, numbers and plain structs");
+    }
+    template <typename T>
+    explicit LaunchArgument(const T&& gone_too_soon) = delete;
+    // A value of a type that only the kernel knows. A size that differs from its own is refused by launch().
+    static LaunchArgument of_bytes(std::span<const std::byte> value) {
+        return LaunchArgument(value.data(), value.size());
     }
 
     const void* value() const { return value_; }
@@ -38,29 +42,32 @@ class LaunchArgument {
     bool is_set() const { return is_set_; }  // false: a buffer without memory
 
   private:
-    const void* value_ = nullptr;
+    LaunchArgument(const void* value, uint64_t bytes) : value_(value), bytes_(bytes) {}
+
+    const void* value_;
     uint64_t bytes_;
     bool is_set_ = true;
 };
 
-// What one launch is, for error messages.
-struct LaunchPlace {
+// A kernel's run over item_count > 0 items in groups of local_size. The last group is filled up, so the kernel compares
+// its index with the count it is given.
+struct Launch {
     const Device& device;
     const cl::Kernel& kernel;
-    std::string_view stage;
+    std::string_view stage;  // for error messages
     uint64_t item_count;
+    uint32_t local_size;
 };
 
-// Runs the kernel over item_count > 0 items in groups of local_size; the last group is filled up, so the kernel
-// compares its index with the count it is given. Returns at once; the event carries the kernel's times.
-cl::Event launch(const LaunchPlace& place, uint32_t local_size, std::span<const LaunchArgument> arguments);
+// Returns at once; the event carries the kernel's times.
+cl::Event launch(const Launch& run, std::span<const LaunchArgument> arguments);
 
 // The same with the arguments where it is called.
 template <typename... Args>
 cl::Event launch(const Device& device, const cl::Kernel& kernel, std::string_view stage, uint64_t item_count,
                  uint32_t local_size, const Args&... args) {
     const std::array<LaunchArgument, sizeof...(Args)> arguments{LaunchArgument(args)...};
-    return launch({device, kernel, stage, item_count}, local_size, arguments);
+    return launch({device, kernel, stage, item_count, local_size}, arguments);
 }
 
 }  // namespace obscura

@@ -18,7 +18,7 @@ LaunchArgument zero_of_its_size(const cl::Kernel& kernel, cl_uint index, std::st
     static constexpr std::array<std::byte, 1024> ZEROS{};
     for (size_t bytes = 1; bytes <= ZEROS.size(); bytes += bytes < 4 ? bytes : 4)
         if (clSetKernelArg(kernel(), index, bytes, ZEROS.data()) == CL_SUCCESS)
-            return LaunchArgument(std::span(ZEROS).first(bytes));
+            return LaunchArgument::of_bytes(std::span(ZEROS).first(bytes));
     throw DeviceError(
         "{}: argument {} of the kernel is larger than {} bytes or has a type that can't be set.", stage,
         index, ZEROS.size());
@@ -43,7 +43,7 @@ void warm_up(Device& device, const cl::Kernel& kernel, std::string_view stage, u
         else
             arguments.emplace_back(memory);
     }
-    launch({device, kernel, stage, 1}, local_size, arguments);
+    launch({device, kernel, stage, 1, local_size}, arguments);
     device.finish(stage);
 }
 

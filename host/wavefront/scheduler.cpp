@@ -25,7 +25,7 @@ void Scheduler::run(Stage stage, const Work& work) {
     const cl::Kernel& kernel = kernels_[static_cast<uint32_t>(stage)];
     if (kernel() == nullptr) return;  // not needed by this scene
     const uint64_t items = info.items(work, queues_.shape);
-    const cl::Event event = launch({device_, kernel, info.name, items}, local_size_,
+    const cl::Event event = launch({device_, kernel, info.name, items, local_size_},
                                    stage_arguments(info, scene_, queues_, work));
     profiler_.record(std::string(info.rows[work.depth == 0 ? 0 : 1]), items, event);
 }

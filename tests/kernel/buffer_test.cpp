@@ -4,6 +4,7 @@
 
 #include <array>
 #include <numeric>
+#include <type_traits>
 
 #include "base/error.h"
 #include "device/launch.h"
@@ -17,7 +18,7 @@ using test::DeviceTest;
 
 class DeviceBuffer : public DeviceTest {};
 class MemoryLedgerOfDevice : public DeviceTest {};
-class Launch : public DeviceTest {};
+class Launching : public DeviceTest {};
 
 std::vector<uint32_t> counting(size_t count) {
     std::vector<uint32_t> values(count);
@@ -124,7 +125,7 @@ kernel void mix_values(global const float* in, global float* out, uint count, Pa
     out[i] = scratch[get_local_id(0)] * in[i] + pair.b;
 })";
 
-TEST_F(Launch, BindsBuffersNumbersStructsAndLocalMemory) {
+TEST_F(Launching, BindsBuffersNumbersStructsAndLocalMemory) {
     constexpr uint32_t COUNT = 1000;  // no multiple of the local size
     std::vector<float> in(COUNT);
     std::iota(in.begin(), in.end(), 0.0f);
@@ -145,13 +146,22 @@ TEST_F(Launch, BindsBuffersNumbersStructsAndLocalMemory) {
     EXPECT_GT(end, start);
 }
 
-TEST_F(Launch, WrongNumberOfArgumentsAborts) {
+// It would be bound after the value is gone.
+TEST_F(Launching, TemporariesAreNoArguments) {
+    EXPECT_TRUE((std::is_constructible_v<LaunchArgument, const Buffer&>));
+    EXPECT_FALSE((std::is_constructible_v<LaunchArgument, Buffer>));
+    EXPECT_TRUE((std::is_constructible_v<LaunchArgument, const uint32_t&>));
+    EXPECT_FALSE((std::is_constructible_v<LaunchArgument, uint32_t>));
+    EXPECT_TRUE((std::is_constructible_v<LaunchArgument, LocalMemory>));
+}
+
+TEST_F(Launching, WrongNumberOfArgumentsAborts) {
     ProgramLibrary library(device());
     const cl::Kernel kernel = library.kernel_from_text("mix", MIX_SOURCE, "mix_values");
     EXPECT_DEATH(launch(device(), kernel, "mix", 1, 64, 1u), "takes 5 arguments, 1 are given");
 }
 
-TEST_F(Launch, WrongArgumentSizeNamesStageAndArgument) {
+TEST_F(Launching, WrongArgumentSizeNamesStageAndArgument) {
     ProgramLibrary library(device());
     const cl::Kernel kernel = library.kernel_from_text("mix", MIX_SOURCE, "mix_values");
     const Buffer buffer(device(), "values", "scene", 256);
@@ -166,7 +176,7 @@ TEST_F(Launch, WrongArgumentSizeNamesStageAndArgument) {
     }
 }
 
-TEST_F(Launch, TooLargeGroupNamesStageAndCount) {
+TEST_F(Launching, TooLargeGroupNamesStageAndCount) {
     ProgramLibrary library(device());
     const cl::Kernel kernel = library.kernel_from_text("mix", MIX_SOURCE, "mix_values");
     const Buffer buffer(device(), "values", "scene", 256);

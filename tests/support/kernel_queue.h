@@ -190,7 +190,7 @@ class StageBench {
         const StageInfo& info = stage_info(stage);
         const cl::Kernel stage_kernel = kernel(stage);
         constexpr uint64_t MORE_THAN_ENOUGH = 4096;
-        launch({device_, stage_kernel, info.name, MORE_THAN_ENOUGH}, library_.local_size(),
+        launch({device_, stage_kernel, info.name, MORE_THAN_ENOUGH, library_.local_size()},
                stage_arguments(info, scene_, *buffers_, work));
         for (auto& [name, queue] : queues_)
             queue.download();
