@@ -2,7 +2,6 @@
 // What a kernel is compiled with: the needs analysis turned into build options.
 #pragma once
 
-#include "device/program.h"
 #include "scene/needs.h"
 #include "wavefront/stages.h"
 

@@ -5,7 +5,7 @@
 
 #include "scene/needs.h"
 #include "scene/settings.h"
-#include "wavefront/queues.h"
+#include "wavefront/queue_sizes.h"
 
 #include <cstdint>
 #include <vector>

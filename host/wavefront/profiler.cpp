@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <ranges>
 
+#include "base/error.h"
 #include "device/error.h"
 
 namespace obscura {
@@ -15,7 +16,8 @@ void Profiler::record(const std::string& row, uint64_t items, const cl::Event& e
 void Profiler::set_items(const std::string& row, uint64_t items) {
     const auto latest =
         std::ranges::find(pending_.rbegin(), pending_.rend(), row, [](const Pending& p) { return p.row; });
-    if (latest != pending_.rend()) latest->items = items;
+    OBSCURA_CHECK(latest != pending_.rend(), "the profile has no new launch of {}", row);
+    latest->items = items;
 }
 
 void Profiler::collect() {

@@ -25,7 +25,7 @@ class Profiler {
 
     // row: "trace_camera", "shade" ...; items: work of the launch as its stage counts it.
     void record(const std::string& row, uint64_t items, const cl::Event& event);
-    // Replaces the item count of the row's latest launch, once the device has told it.
+    // Replaces the item count of the row's latest launch, which is not collected yet, once the device has told it.
     void set_items(const std::string& row, uint64_t items);
     // Reads the times of finished launches. Call when the queue is idle.
     void collect();

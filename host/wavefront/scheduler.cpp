@@ -20,14 +20,20 @@ Scheduler::Scheduler(Device& device, const StageKernels& kernels, const SceneBuf
       local_size_(local_size),
       profiler_(profiler) {}
 
-void Scheduler::run(Stage stage, const Work& work) {
-    const StageInfo& info = stage_info(stage);
-    const cl::Kernel& kernel = kernels_[static_cast<uint32_t>(stage)];
-    if (kernel() == nullptr) return;  // not needed by this scene
-    const uint64_t items = info.items(work, queues_.shape);
-    const cl::Event event = launch({device_, kernel, info.name, items, local_size_},
-                                   stage_arguments(info, scene_, queues_, work));
-    profiler_.record(std::string(info.rows[work.depth == 0 ? 0 : 1]), items, event);
+// The kernels that the scene doesn't need are empty.
+bool Scheduler::launches(const StageInfo& stage) const {
+    return kernels_[static_cast<uint32_t>(stage.stage)]() != nullptr;
+}
+
+void Scheduler::run_stages(StageTime time, const Work& work) {
+    for (const StageInfo& info : STAGES) {
+        if (info.time != time || !launches(info)) continue;
+        const uint64_t items = info.items(work, queues_.shape);
+        const cl::Kernel& kernel = kernels_[static_cast<uint32_t>(info.stage)];
+        const cl::Event event = launch({device_, kernel, info.name, items, local_size_},
+                                       stage_arguments(info, scene_, queues_, work));
+        profiler_.record(std::string(info.row(work.depth)), items, event);
+    }
 }
 
 uint64_t Scheduler::render(const Frame& frame, const WaveCallback& after_wave) {
@@ -50,7 +56,7 @@ void Scheduler::run_wave(const Frame& frame, const Wave& wave) {
                        .first_pass = wave.first_pass,
                        .count = wave.count,
                        .pixels = frame.crop.z};
-    run(Stage::camera, samples);
+    run_stages(StageTime::wave_start, samples);
     rays_.camera += wave.count;
     Work rays = samples;
     for (; rays.depth <= frame.seed.z && rays.count > 0; ++rays.depth) {
@@ -58,34 +64,31 @@ void Scheduler::run_wave(const Frame& frame, const Wave& wave) {
         // Without continuations there is no second queue to swap with.
         if (rays.count > 0) std::swap(queues_.rays, queues_.next_rays);
     }
-    run(Stage::film, samples);
-    std::array<uint32_t, STATUS_WORDS> status{};
-    queues_.counters.download(status);
-    check_status(status);
+    run_stages(StageTime::wave_end, samples);
+    read_status();
     profiler_.collect();
 }
 
 uint32_t Scheduler::run_depth(const Frame& frame, const Work& work) {
     queues_.counters.clear();
-    for (const Stage stage : {Stage::trace, Stage::shade, Stage::shadow, Stage::obscurance, Stage::gather})
-        run(stage, work);
-
-    std::array<uint32_t, STATUS_WORDS> status{};
-    queues_.counters.download(status);  // the only host wait of a depth
-    check_status(status);
-    const uint64_t obscurance_rays = uint64_t{status[COUNT_POINTS]} * frame.sampling.y;
-    profiler_.set_items("shadow", status[COUNT_SHADOWS]);
-    profiler_.set_items("obscurance", obscurance_rays);
+    run_stages(StageTime::each_depth, work);
+    const DeviceStatus status = read_status();  // the only host wait of a depth
+    for (const StageInfo& info : STAGES) {
+        if (info.counted != nullptr && launches(info))
+            profiler_.set_items(std::string(info.row(work.depth)), info.counted(status, queues_.shape));
+    }
     rays_.shadow += status[COUNT_SHADOWS];
-    rays_.obscurance += obscurance_rays;
+    rays_.obscurance += uint64_t{status[COUNT_POINTS]} * queues_.shape.obscurance_rays;
     rays_.glossy += status[COUNT_RAYS];
     if (observer_)
         observer_({work.depth, work.count, status[COUNT_SHADOWS], status[COUNT_POINTS]}, frame, queues_);
     return status[COUNT_RAYS];
 }
 
-void Scheduler::check_status(const std::array<uint32_t, STATUS_WORDS>& status) const {
-    if (status[STATUS_CODE] == STATUS_OK) return;
+DeviceStatus Scheduler::read_status() const {
+    DeviceStatus status{};
+    queues_.counters.download(status);
+    if (status[STATUS_CODE] == STATUS_OK) return status;
     const char* what = "an unknown failure";
     if (status[STATUS_CODE] == STATUS_NOT_FINITE) what = "a contribution is not a finite number";
     if (status[STATUS_CODE] == STATUS_STACK_OVERFLOW) what = "the traversal stack is too small";

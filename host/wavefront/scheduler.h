@@ -53,8 +53,9 @@ class Scheduler {
     void run_wave(const Frame& frame, const Wave& wave);
     // One depth of a wave's paths; the number of rays that go on.
     uint32_t run_depth(const Frame& frame, const Work& work);
-    void check_status(const std::array<uint32_t, STATUS_WORDS>& status) const;
-    void run(Stage stage, const Work& work);
+    DeviceStatus read_status() const;  // waits for the device; throws DeviceError when a kernel has failed
+    bool launches(const StageInfo& stage) const;
+    void run_stages(StageTime time, const Work& work);
 
     Device& device_;
     const StageKernels& kernels_;

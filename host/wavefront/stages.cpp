@@ -44,42 +44,65 @@ uint64_t each_pixel(const Work& work, const QueueShape&) {
     return std::min(work.count, work.pixels);
 }
 
+uint64_t shadow_rays_counted(const DeviceStatus& status, const QueueShape&) {
+    return status[COUNT_SHADOWS];
+}
+uint64_t obscurance_rays_counted(const DeviceStatus& status, const QueueShape& shape) {
+    return uint64_t{status[COUNT_POINTS]} * shape.obscurance_rays;
+}
+
+// What shade appends for one ray.
+constexpr std::array<Append, 3> shade_appends{{
+    {Queue::next_rays, [](const QueueShape& shape) -> uint64_t { return shape.specular_paths ? 1 : 0; }},
+    {Queue::shadow_rays, [](const QueueShape& shape) -> uint64_t { return shape.light_samples; }},
+    {Queue::points, [](const QueueShape& shape) -> uint64_t { return shape.obscurance_rays > 0 ? 1 : 0; }},
+}};
+constexpr std::array<Append, 3> nothing{};
+
 }  // namespace
 
+using enum StageTime;
 // clang-format off
-constinit const std::array<StageInfo, STAGE_COUNT> STAGES{{
-    {Stage::camera, "camera", {"camera", "camera"}, "", always, each,
+constexpr std::array<StageInfo, STAGE_COUNT> STAGES{{
+    {Stage::camera, "camera", wave_start, {"camera", "camera"}, "", always, each, nullptr, nothing,
      {frame, tables, sample_order, rays, paths, first_pixel, first_pass, count}},
 
-    {Stage::trace, "trace", {"trace_camera", "trace_glossy"}, "", always, each,
+    {Stage::trace, "trace", each_depth, {"trace_camera", "trace_glossy"}, "", always, each, nullptr, nothing,
      {frame, nodes, blocks, rays, counters, count}},
 
-    {Stage::shade, "shade", {"shade", "shade"},
+    {Stage::shade, "shade", each_depth, {"shade", "shade"},
      "textures smooth_normals glossy mirror transmission area_lights point_lights spot_lights directional_lights "
      "emission background ambient obscurance specular_paths",
-     always, each,
+     always, each, nullptr, shade_appends,
      {frame, triangles, materials, area_lights, point_lights, texels, tables, rays, paths, next_rays, shadow_rays,
       points, counters, count, depth}},
 
-    {Stage::shadow, "shadow", {"shadow", "shadow"},
+    {Stage::shadow, "shadow", each_depth, {"shadow", "shadow"},
      "textures transmission area_lights point_lights spot_lights directional_lights",
-     [](const Needs& needs) { return needs.direct(); }, each_light_sample,
+     [](const Needs& needs) { return needs.direct(); }, each_light_sample, shadow_rays_counted, nothing,
      {frame, nodes, blocks, triangles, materials, texels, tables, shadow_rays, visibility, counters}},
 
-    {Stage::obscurance, "obscurance", {"obscurance", "obscurance"},
+    {Stage::obscurance, "obscurance", each_depth, {"obscurance", "obscurance"},
      "textures transmission bleeding falloff",
-     [](const Needs& needs) { return needs.obscurance; }, each,
+     [](const Needs& needs) { return needs.obscurance; }, each, obscurance_rays_counted, nothing,
      {frame, nodes, blocks, triangles, materials, texels, tables, points, paths, results, counters, depth}},
 
-    {Stage::gather, "gather", {"gather", "gather"},
+    {Stage::gather, "gather", each_depth, {"gather", "gather"},
      "glossy area_lights point_lights spot_lights directional_lights ambient obscurance",
-     [](const Needs& needs) { return needs.direct() || needs.ambient; }, each,
+     [](const Needs& needs) { return needs.direct() || needs.ambient; }, each, nullptr, nothing,
      {frame, rays, visibility, results, paths, count, depth}},
 
-    {Stage::film, "film", {"film", "film"}, "", always, each_pixel,
+    {Stage::film, "film", wave_end, {"film", "film"}, "", always, each_pixel, nullptr, nothing,
      {frame, paths, sums, counters, first_pixel, first_pass, count}},
 }};
 // clang-format on
+
+// stage_info() looks a stage up by its number, and messages name one by the number that its kernel reports.
+static_assert([] {
+    for (uint32_t i = 0; i < STAGE_COUNT; ++i)
+        if (STAGES[i].stage != static_cast<Stage>(i)) return false;
+    return true;
+}());
 
 std::vector<Stage> needed_stages(const Needs& needs) {
     std::vector<Stage> stages;

@@ -6,6 +6,7 @@
 #include "device/launch.h"
 #include "device/scene_buffers.h"
 #include "scene/needs.h"
+#include "shared/wavefront.h"
 #include "wavefront/queues.h"
 
 #include <array>
@@ -16,8 +17,19 @@
 
 namespace obscura {
 
-enum class Stage : uint32_t { camera = 0, trace, shade, shadow, obscurance, gather, film };  // = STAGE_*
+enum class Stage : uint32_t {
+    camera = STAGE_CAMERA,
+    trace = STAGE_TRACE,
+    shade = STAGE_SHADE,
+    shadow = STAGE_SHADOW,
+    obscurance = STAGE_OBSCURANCE,
+    gather = STAGE_GATHER,
+    film = STAGE_FILM,
+};
 constexpr uint32_t STAGE_COUNT = 7;
+
+// When a wave launches a stage; those of the same time run in the table's order.
+enum class StageTime { wave_start, each_depth, wave_end };
 
 // What a launch is told beside its buffers.
 struct Work {
@@ -25,7 +37,7 @@ struct Work {
     uint32_t first_pass = 0;   // of the wave's first pixel
     uint32_t count = 0;        // camera samples of the wave, or rays of the depth
     uint32_t depth = 0;
-    uint32_t pixels = 0;  // of the film
+    uint32_t pixels = 0;  // of the frame: film has an item for each that the wave samples
 };
 
 // A kernel's parameter: its name, and where its value comes from.
@@ -34,17 +46,28 @@ struct Argument {
     std::variant<Buffer SceneBuffers::*, Buffer Queues::*, uint32_t Work::*> source;
 };
 
+// A queue that a stage appends to, and how much at most for each of its items.
+struct Append {
+    Queue queue;
+    uint64_t (*most)(const QueueShape&);
+};
+
 struct StageInfo {
     Stage stage;
     std::string_view name;
+    StageTime time;
     std::array<std::string_view, 2> rows;  // of the profile: at depth 0, deeper
     // The NEED_* flags that its kernel depends on: names of needs.h, separated by blanks.
     std::string_view features;
     bool (*needed)(const Needs&);
-    // Work items of a launch. How many shadow rays and obscurance points there are only the device knows: their launches
-    // cover the most there can be.
+    // Work items of a launch.
     uint64_t (*items)(const Work&, const QueueShape&);
+    // How many of these there really were, where only the device knows and the launch covers the most there can be; else null.
+    uint64_t (*counted)(const DeviceStatus&, const QueueShape&);
+    std::array<Append, 3> appends;        // the rest is empty
     std::array<Argument, 15> parameters;  // of its kernel, in order; the rest is empty
+
+    std::string_view row(uint32_t depth) const { return rows[depth == 0 ? 0 : 1]; }
 };
 
 extern const std::array<StageInfo, STAGE_COUNT> STAGES;

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table of stages against the kernels: what a launch sets is what the kernel takes, a stage without work touches
-// nothing, and an item that points out of its queue is reported, not followed.
+// nothing, an item that points out of its queue is reported, not followed, and a render profiles its stages.
 #include <algorithm>
 #include <fstream>
+#include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "support/device.h"
 #include "support/kernel_queue.h"
+#include "support/render.h"
 #include "support/scene_builder.h"
 
 namespace obscura {
@@ -61,11 +64,6 @@ TEST_P(StageTable, StageWithoutWorkTouchesNothing) {
     EXPECT_EQ(wave.snapshot(), before);
 }
 
-TEST_P(StageTable, ProfileRowsBeginWithItsName) {
-    for (const std::string_view profile_row : row().rows)
-        EXPECT_TRUE(profile_row.starts_with(GetParam())) << profile_row;
-}
-
 TEST_P(StageTable, KernelAndTestBearItsName) {
     const std::string root = OBSCURA_SOURCE_DIR;
     const std::string name(GetParam());
@@ -102,6 +100,84 @@ TEST_P(BadSlot, IsReportedNotFollowed) {
 
 INSTANTIATE_TEST_SUITE_P(Stages, BadSlot, testing::Values("shade", "shadow", "obscurance"),
                          [](const auto& stage) { return std::string(stage.param); });
+
+class Profile : public test::DeviceTest {
+  protected:
+    // Inside a glowing box.
+    static RenderResult render_box(const Material& material) {
+        test::SceneBuilder builder;
+        builder.box({-1, -1, -1}, {1, 1, 1}, builder.material(material), true);
+        return test::render(builder.finish(), test::picture(4, 4, 2, K));
+    }
+    static std::set<std::string_view> rows(const RenderResult& result) {
+        std::set<std::string_view> names;
+        for (const auto& [name, row] : result.profile)
+            names.insert(name);
+        return names;
+    }
+};
+
+TEST_F(Profile, HasTheRowsOfTheNeededStages) {
+    Material mirror = test::metal(Rgb(0.9f), 0);
+    for (const Material& material : {test::matte(Rgb(0.5f)), test::matte(Rgb(0.5f), Rgb(1)), mirror}) {
+        const RenderResult result = render_box(material);
+        std::set<std::string_view> expected;
+        for (const Stage stage : needed_stages(result.needs)) {
+            expected.insert(stage_info(stage).row(0));
+            if (result.rays.glossy > 0) expected.insert(stage_info(stage).row(1));
+        }
+        EXPECT_EQ(rows(result), expected);
+    }
+    EXPECT_GT(render_box(mirror).rays.glossy, 0u);
+}
+
+TEST_F(Profile, CountsTheRaysTraced) {
+    Material glossy = test::metal(Rgb(0.9f), 0.5f);
+    glossy.metallic = 0.5f;
+    glossy.emission = Rgb(1);
+    const RenderResult result = render_box(glossy);
+    EXPECT_EQ(result.profile.at("trace_camera").items, result.rays.camera);
+    EXPECT_EQ(result.profile.at("trace_glossy").items, result.rays.glossy);
+    EXPECT_EQ(result.profile.at("shadow").items, result.rays.shadow);
+    EXPECT_EQ(result.profile.at("obscurance").items, result.rays.obscurance);
+    EXPECT_GT(result.rays.shadow, 0u);
+    EXPECT_GT(result.rays.obscurance, 0u);
+}
+
+constexpr const char* LIGHT_SAMPLES_SOURCE = R"(
+#include "lib/layers.clh"
+kernel void light_samples(global const Frame* frame, global uint* out, uint count) {
+    if (get_global_id(0) < count) out[0] = light_sample_count(frame);
+})";
+
+class LightSamples : public test::DeviceTest {};
+
+// The host sizes the queues by that number, the kernels index them by it.
+TEST_F(LightSamples, AreCountedAlikeByHostAndKernels) {
+    RenderSettings settings;
+    settings.light_samples = 3;
+    Frame frame{};
+    frame.sampling.z = settings.light_samples;
+    const Buffer frame_buffer = Buffer::holding(device(), "frame", "test", std::span(&frame, 1));
+    Buffer out(device(), "out", "test", sizeof(uint32_t));
+    ProgramLibrary library(device());
+    for (const bool area : {false, true}) {
+        for (const bool punctual : {false, true}) {
+            Needs needs;
+            needs.area_lights = area;
+            needs.directional_lights = punctual;
+            for (const Stage stage : {Stage::shade, Stage::shadow, Stage::gather}) {
+                const cl::Kernel kernel =
+                    library.kernel_from_text("light_samples", LIGHT_SAMPLES_SOURCE, "light_samples",
+                                             stage_options(stage, needs, false, false));
+                launch(device(), kernel, "light_samples", 1, library.local_size(), frame_buffer, out, 1u);
+                EXPECT_EQ(out.contents<uint32_t>()[0], queue_shape(needs, settings, 0).light_samples)
+                    << stage_info(stage).name << " with area lights " << area << ", punctual lights "
+                    << punctual;
+            }
+        }
+    }
+}
 
 }  // namespace
 }  // namespace obscura

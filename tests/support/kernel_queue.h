@@ -122,14 +122,13 @@ class StageBench {
         light_samples = shape.light_samples;  // of area lights, then of punctual lights
         Queues& buffers = *buffers_;
         buffers.shape = shape;
-        buffers.capacity = capacity;
         buffers.frame = Buffer(device, "frame", "test", sizeof(Frame));
         buffers.sample_order =
             Buffer::holding(device, "sample_order", "test", bit_reversed_order(settings.spp));
         buffers.counters = Buffer(device, "counters", "test", sizeof(counters));
         for (const QueueSize& size : queue_sizes(shape))
             queues_.try_emplace(size.name, device, size.name, size.lanes, size.items * capacity,
-                                buffers.*size.buffer);
+                                buffers.buffer(size.queue));
         queues_.try_emplace("film", device, "film", plane_count_, rect.pixel_count(), buffers.film);
     }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene needs becomes build options and a list of stages: nothing else is compiled or launched.
+// What a scene needs becomes build options: nothing else is compiled.
 #include "wavefront/features.h"
 
 #include <gtest/gtest.h>
@@ -72,19 +72,6 @@ TEST(Features, PortableIsPassedToEveryStage) {
         EXPECT_EQ(stage_options(info.stage, {}, false, false).find("PORTABLE"), std::string::npos)
             << info.name;
     }
-}
-
-TEST(Features, StagesWithoutWorkAreNotLaunched) {
-    using enum Stage;
-    Needs needs;
-    EXPECT_EQ(needed_stages(needs), (std::vector{camera, trace, shade, film}));
-    needs.ambient = true;  // constant
-    EXPECT_EQ(needed_stages(needs), (std::vector{camera, trace, shade, gather, film}));
-    needs.obscurance = true;
-    EXPECT_EQ(needed_stages(needs), (std::vector{camera, trace, shade, obscurance, gather, film}));
-    needs.spot_lights = true;
-    EXPECT_EQ(needed_stages(needs), (std::vector{camera, trace, shade, shadow, obscurance, gather, film}));
-    EXPECT_EQ(needed_stages(everything(FalloffKind::exp)).size(), size_t{STAGE_COUNT});
 }
 
 }  // namespace
