@@ -97,6 +97,16 @@ TEST_F(GatherStage, ObscuranceLayerIsWrittenOncePerPath) {
     EXPECT_EQ(test::bits(wave.paths().at(PATH_SAMPLE, 0).w), PATH_OBSCURANCE_SEEN);
 }
 
+// Shade has reported such an item; gather only has to leave the memory behind the slots alone.
+TEST_F(GatherStage, SlotBeyondTheLastIsNotFollowed) {
+    constexpr uint32_t CAPACITY = 2;
+    test::StageBench wave = bench(CAPACITY);
+    wave.set_slot(0, CAPACITY);
+    const auto before = wave.snapshot();
+    wave.run_gather(1, 0);
+    EXPECT_EQ(wave.snapshot(), before);
+}
+
 TEST_F(GatherStage, TouchesOnlyTheSlotsOfItsItems) {
     test::StageBench wave = bench(6);
     for (const uint32_t item : {0u, 1u, 2u})
