@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "shared/wavefront.h"
+#include "shared/types.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,18 @@ namespace {
 constexpr uint64_t LANE_BYTES = sizeof(f32x4);
 // Below this a wave is all launch overhead.
 constexpr uint64_t MIN_WAVE = 64;
-// Indices into queues and of pixels are 32 bits wide.
+// Kernels count elements of queues, pixels and samples in 32 bits, and add two such numbers where a wave wraps around
+// the picture (camera, film): half the range keeps the sum exact.
 constexpr uint64_t MAX_INDEX = 0x7fffffff;
+
+// The option that sets the size of the largest queue. Rays and layers alone stay below 1 KiB per slot, which no limit
+// notices.
+const char* largest_queue_option(const QueueShape& shape) {
+    const auto sizes = queue_sizes(shape);
+    const auto largest =
+        std::ranges::max_element(sizes, {}, [](const QueueSize& size) { return size.lanes * size.items; });
+    return largest->queue == Queue::results ? "--obscurance-rays" : "--light-samples";
+}
 
 }  // namespace
 
@@ -59,15 +69,27 @@ uint64_t largest_bytes_per_slot(const QueueShape& shape) {
 
 uint32_t wave_capacity(const QueueShape& shape, uint64_t wanted, uint64_t memory_bytes,
                        uint64_t max_allocation_bytes, uint64_t sample_count) {
-    const uint64_t largest_queue = std::min(max_allocation_bytes, MAX_INDEX * LANE_BYTES);
-    const uint64_t fits =
-        std::min(memory_bytes / bytes_per_slot(shape), largest_queue / largest_bytes_per_slot(shape));
-    if (fits < MIN_WAVE) {
+    constexpr uint64_t INDEXED_BYTES = MAX_INDEX * LANE_BYTES;
+    const uint64_t queue_bytes = std::min(max_allocation_bytes, INDEXED_BYTES);
+    const uint64_t fit_one_queue = queue_bytes / largest_bytes_per_slot(shape);
+    if (fit_one_queue < MIN_WAVE) {
         throw InputError(
-            "{} of queue memory hold {} camera samples at {} each, {} are the least: raise --memory or "
-            "lower --obscurance-rays or --light-samples",
-            bytes_text(memory_bytes), fits, bytes_text(bytes_per_slot(shape)), MIN_WAVE);
+            "the largest queue takes {} for each camera sample, and the {} that {} hold {}, {} are the "
+            "least: "
+            "lower {}",
+            bytes_text(largest_bytes_per_slot(shape)), bytes_text(queue_bytes),
+            max_allocation_bytes < INDEXED_BYTES ? "the device allows one buffer" : "31-bit indices reach",
+            fit_one_queue, MIN_WAVE, largest_queue_option(shape));
     }
+    const uint64_t fit_memory = memory_bytes / bytes_per_slot(shape);
+    if (fit_memory < MIN_WAVE) {
+        throw InputError(
+            "{} of queue memory hold {} at {} each, {} are the least: raise --memory or lower "
+            "--obscurance-rays or --light-samples",
+            bytes_text(memory_bytes), counted(fit_memory, "camera sample"), bytes_text(bytes_per_slot(shape)),
+            MIN_WAVE);
+    }
+    const uint64_t fits = std::min(fit_memory, fit_one_queue);
     return static_cast<uint32_t>(
         std::clamp(std::min(wanted, fits), uint64_t{1}, std::max(sample_count, MIN_WAVE)));
 }

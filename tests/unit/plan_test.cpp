@@ -4,9 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "support/errors.h"
 
 namespace obscura {
 namespace {
@@ -53,15 +58,96 @@ TEST(Plan, CapacityFitsMemoryAndAllocationLimits) {
     EXPECT_EQ(wave_capacity(shape, 1u << 20, uint64_t{1} << 40, uint64_t{1} << 40, 100), 100u);
 }
 
-TEST(Plan, TooLittleMemoryIsAnInputError) {
-    const QueueShape shape{.obscurance_rays = 1u << 20};
-    EXPECT_THROW(wave_capacity(shape, 1024, 1 << 20, 1 << 20, 1000), InputError);
+constexpr uint64_t PLENTY = uint64_t{1} << 50;
+
+std::string capacity_error(const QueueShape& shape, uint64_t memory_bytes, uint64_t max_allocation_bytes) {
+    return test::input_error([&] { wave_capacity(shape, 1024, memory_bytes, max_allocation_bytes, PLENTY); });
 }
 
-TEST(Plan, ResultIndicesStayBelow31Bits) {
-    const QueueShape shape{.obscurance_rays = 1u << 16};
-    const uint64_t plenty = uint64_t{1} << 50;
-    EXPECT_LE(uint64_t{wave_capacity(shape, 1u << 31, plenty, plenty, plenty)} * (1u << 16), 0x7fffffffu);
+TEST(Plan, TooLittleMemoryAsksForMore) {
+    const QueueShape shape{.obscurance_rays = 1024};
+    EXPECT_EQ(
+        capacity_error(shape, 20000, PLENTY),
+        "19.53 KiB of queue memory hold 1 camera sample at 16.14 KiB each, 64 are the least: raise --memory "
+        "or lower --obscurance-rays or --light-samples");
+}
+
+// More memory wouldn't help.
+TEST(Plan, TooSmallBuffersAskForSmallerQueues) {
+    EXPECT_EQ(
+        capacity_error({.obscurance_rays = 2048}, PLENTY, 1 << 20),
+        "the largest queue takes 32 KiB for each camera sample, and the 1 MiB that the device allows one "
+        "buffer hold 32, 64 are the least: lower --obscurance-rays");
+    EXPECT_EQ(
+        capacity_error({.light_samples = 4096}, PLENTY, 1 << 20),
+        "the largest queue takes 128 KiB for each camera sample, and the 1 MiB that the device allows one "
+        "buffer hold 8, 64 are the least: lower --light-samples");
+}
+
+TEST(Plan, TooManyResultsForTheirIndicesAskForFewer) {
+    EXPECT_EQ(
+        capacity_error({.obscurance_rays = 1u << 27}, PLENTY, PLENTY),
+        "the largest queue takes 2 GiB for each camera sample, and the 32 GiB that 31-bit indices reach "
+        "hold 15, 64 are the least: lower --obscurance-rays");
+}
+
+TEST(Plan, IndicesIntoEveryQueueStayBelow31Bits) {
+    const std::vector<std::pair<std::string_view, QueueShape>> largest{
+        {"rays", {}},
+        {"paths", {.light_samples = 64, .light_lobes = 2}},
+        {"shadow_rays", {.light_samples = 64}},
+        {"results", {.obscurance_rays = 1u << 16}},
+    };
+    for (const auto& [name, shape] : largest) {
+        const uint64_t capacity = wave_capacity(shape, PLENTY, PLENTY, PLENTY, PLENTY);
+        for (const QueueSize& size : queue_sizes(shape)) {
+            const uint64_t elements = size.lanes * size.items * capacity;
+            EXPECT_LE(elements, 0x7fffffffu) << size.name;
+            if (size.name == name) {
+                EXPECT_GE(elements, 0x7fff0000u) << name << ": fewer than the bound allows";
+            }
+        }
+    }
+}
+
+TEST(Plan, ShapeHasLightSamplesForEachGroupOfLights) {
+    RenderSettings settings;
+    settings.light_samples = 3;
+    const auto light_samples = [&](const Needs& needs) {
+        return queue_shape(needs, settings, 1).light_samples;
+    };
+    Needs none;
+    EXPECT_EQ(light_samples(none), 0u);
+    Needs area;
+    area.area_lights = true;
+    EXPECT_EQ(light_samples(area), 3u);
+    for (bool Needs::*const kind : {&Needs::point_lights, &Needs::spot_lights, &Needs::directional_lights}) {
+        Needs punctual;
+        punctual.*kind = true;
+        EXPECT_EQ(light_samples(punctual), 3u);
+        Needs both = area;
+        both.*kind = true;
+        EXPECT_EQ(light_samples(both), 6u);
+    }
+    Needs all_punctual;
+    all_punctual.point_lights = all_punctual.spot_lights = all_punctual.directional_lights = true;
+    EXPECT_EQ(light_samples(all_punctual), 3u) << "they are one group";
+}
+
+TEST(Plan, ShapeHasOnlyWhatTheSceneNeeds) {
+    RenderSettings settings;
+    settings.obscurance_rays = 5;
+    const QueueShape least = queue_shape({}, settings, 4);
+    EXPECT_EQ(least.layer_planes, 4u);
+    EXPECT_EQ(least.light_lobes, 1u);
+    EXPECT_EQ(least.obscurance_rays, 0u);
+    EXPECT_FALSE(least.specular_paths);
+    Needs needs;
+    needs.glossy = needs.obscurance = needs.specular_paths = true;
+    const QueueShape shape = queue_shape(needs, settings, 4);
+    EXPECT_EQ(shape.light_lobes, 2u);
+    EXPECT_EQ(shape.obscurance_rays, 5u);
+    EXPECT_TRUE(shape.specular_paths);
 }
 
 TEST(Plan, CropsTileThePictureLikePbrt) {
