@@ -34,9 +34,12 @@ void join_texture_coordinates(Image& image) {
     const auto u = find("u");
     const auto v = find("v");
     if (u == image.layers.end() || v == image.layers.end()) return;
-    const Layer& beauty = *find("");
+    const auto beauty = find("");
+    OBSCURA_CHECK(beauty != image.layers.end(), "an image without the layer beauty");
+    const size_t alpha = beauty->find_channel("A");
+    OBSCURA_CHECK(alpha < beauty->channel_count(), "the layer beauty is without coverage");
     add_channel(*u, "V", *v, 0);
-    add_channel(*u, "A", beauty, beauty.find_channel("A"));
+    add_channel(*u, "A", *beauty, alpha);
     image.layers.erase(v);
 }
 

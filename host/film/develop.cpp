@@ -77,9 +77,10 @@ size_t first_component(const std::string& name) {
 const std::vector<LayerInfo>& layer_table() {
     static const std::vector<std::string> rgb{"R", "G", "B"};
     static const std::vector<std::string> xyz{"X", "Y", "Z"};
-    // Blender's pass names (those of 2.80 to 4.5) where it has a pass of that content, our own elsewhere: its DiffDir, for
-    // one, is without the albedo that direct holds. Its Normal is the shading normal. AO is R, G and B: so Blender
-    // writes this grey pass, and readers ask for all three.
+    // Blender's pass names (those of 2.80 to 4.5) where it has a pass of that content or nearly so, our own elsewhere: its
+    // DiffDir, for one, is without the albedo that direct holds. Its Emit is without the sky and its DiffCol without the
+    // specular albedo; ours stand in for them. Its Normal is the shading normal.
+    // AO is R, G and B: so Blender writes this grey pass, and readers ask for all three.
     static const std::vector<LayerInfo> table{
         {LAYER_EMISSION, "emission", rgb, "Emit", rgb, "lights and sky seen directly"},
         {LAYER_DIRECT, "direct", rgb, "Direct", rgb, "diffuse light straight from the lights"},

@@ -58,8 +58,8 @@ uint64_t physical_memory_bytes() {
     return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-// The layers in host memory and the film's sums on their way to them. A system that overcommits its memory would end
-// the program half-way.
+// The layers in host memory and the film's sums on their way to them; what Blender's names add to the layers takes less
+// than the sums, which are gone by then. A system that overcommits its memory would end the program half-way.
 void check_picture_memory(const PixelRect& rect, const std::vector<std::string>& names,
                           uint32_t film_planes) {
     uint64_t channels = 4;  // of beauty

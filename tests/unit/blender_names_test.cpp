@@ -5,9 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
+#include <regex>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "film/develop.h"
@@ -18,16 +21,20 @@ namespace obscura {
 namespace {
 
 using test::make_image;
-using test::pixel_value;
 
-// Beauty and the layers of these names, or all; 3 x 2 pixels.
+// Beauty and the layers of these names, or all; 3 x 2 pixels, of which no two channels have the same.
 Image developed(const std::vector<std::string>& names = {}) {
     std::vector<Layer> layers{{"", {"R", "G", "B", "A"}, {}}};
     for (const LayerInfo& info : layer_table()) {
         if (names.empty() || std::ranges::find(names, info.name) != names.end())
             layers.push_back({info.name, info.channels, {}});
     }
-    return make_image(3, 2, {0, 3, 0, 2}, layers);
+    Image image = make_image(3, 2, {0, 3, 0, 2}, layers);
+    for (size_t i = 0; i < image.layers.size(); ++i) {
+        for (float& value : image.layers[i].pixels)
+            value += static_cast<float>(i) / 512;
+    }
+    return image;
 }
 
 Image renamed(const std::vector<std::string>& names = {}) {
@@ -86,11 +93,28 @@ TEST(BlenderNames, OfTheTableAreUniqueAndWithoutDots) {
 TEST(BlenderNames, KeepThePixels) {
     const Image plain = developed();
     const Image image = renamed();
-    for (const LayerInfo& info : layer_table()) {
-        if (info.layer == LAYER_UV || info.name == std::string("ao")) continue;
-        const Layer* const pass = image.find_layer(std::string("ViewLayer.") + info.blender_pass);
-        ASSERT_NE(pass, nullptr) << info.name;
-        EXPECT_EQ(pass->pixels, plain.find_layer(info.name)->pixels) << info.name;
+    // All but ao, u and v, which have tests of their own.
+    const std::map<std::string, std::string> passes{
+        {"emission", "Emit"},
+        {"direct", "Direct"},
+        {"ambient", "Ambient"},
+        {"specular.emission", "SpecularEmission"},
+        {"specular.direct", "SpecularDirect"},
+        {"specular.ambient", "SpecularAmbient"},
+        {"obscurance", "Obscurance"},
+        {"P", "Position"},
+        {"Z", "Depth"},
+        {"N", "GeometricNormal"},
+        {"Ns", "Normal"},
+        {"Albedo", "DiffCol"},
+        {"Variance", "Variance"},
+        {"RelativeVariance", "RelativeVariance"},
+    };
+    EXPECT_EQ(passes.size() + 3, layer_table().size());
+    for (const auto& [name, pass] : passes) {
+        const Layer* const layer = image.find_layer("ViewLayer." + pass);
+        ASSERT_NE(layer, nullptr) << pass;
+        EXPECT_EQ(layer->pixels, plain.find_layer(name)->pixels) << name;
     }
     ASSERT_NE(image.beauty(), nullptr);
     EXPECT_EQ(image.beauty()->name, BLENDER_BEAUTY);
@@ -98,31 +122,49 @@ TEST(BlenderNames, KeepThePixels) {
 }
 
 TEST(BlenderNames, AmbientOcclusionIsGrey) {
+    const Image plain = developed({"ao"});
     const Image image = renamed({"ao"});
     const Layer* const ao = image.find_layer("ViewLayer.AO");
     ASSERT_NE(ao, nullptr);
     ASSERT_EQ(ao->pixels.size(), 3 * image.pixel_count());
-    for (size_t value = 0; value < ao->pixels.size(); ++value) {
-        const auto pixel = static_cast<int32_t>(value / 3);
-        EXPECT_EQ(ao->pixels[value], pixel_value(pixel % 3, pixel / 3, 0));
-    }
+    for (size_t value = 0; value < ao->pixels.size(); ++value)
+        EXPECT_EQ(ao->pixels[value], plain.find_layer("ao")->pixels[value / 3]);
 }
 
 TEST(BlenderNames, TextureCoordinatesShareAPassWithCoverage) {
-    Image image = developed({"u", "v"});
-    for (float& value : image.layers[2].pixels)
-        value += 0.5f;
-    use_blender_names(image);
+    const Image plain = developed({"u", "v"});
+    const Image image = renamed({"u", "v"});
     const Layer* const uv = image.find_layer("ViewLayer.UV");
     ASSERT_NE(uv, nullptr);
     ASSERT_EQ(uv->pixels.size(), 3 * image.pixel_count());
     for (size_t pixel = 0; pixel < image.pixel_count(); ++pixel) {
-        const auto x = static_cast<int32_t>(pixel % 3);
-        const auto y = static_cast<int32_t>(pixel / 3);
-        EXPECT_EQ(uv->pixels[3 * pixel], pixel_value(x, y, 0));
-        EXPECT_EQ(uv->pixels[3 * pixel + 1], pixel_value(x, y, 0) + 0.5f);
-        EXPECT_EQ(uv->pixels[3 * pixel + 2], pixel_value(x, y, 3));
+        EXPECT_EQ(uv->pixels[3 * pixel], plain.find_layer("u")->pixels[pixel]);
+        EXPECT_EQ(uv->pixels[3 * pixel + 1], plain.find_layer("v")->pixels[pixel]);
+        EXPECT_EQ(uv->pixels[3 * pixel + 2], plain.beauty()->pixels[4 * pixel + 3]);
     }
+}
+
+TEST(BlenderNames, TextureCoordinatesWithoutCoverageAbort) {
+    Image image = make_image(1, 1, {0, 1, 0, 1}, {{"u", {"u"}, {}}, {"v", {"v"}, {}}});
+    EXPECT_DEATH(use_blender_names(image), "without the layer beauty");
+    image = make_image(1, 1, {0, 1, 0, 1}, {{"", {"R", "G", "B"}, {}}, {"u", {"u"}, {}}, {"v", {"v"}, {}}});
+    EXPECT_DEATH(use_blender_names(image), "beauty is without coverage");
+}
+
+// Its table of layers has the layer in the first column, Blender's name in the last.
+TEST(BlenderNames, AreThoseOfTheReadme) {
+    std::set<std::pair<std::string, std::string>> expected{{"(none)", "Combined"}};
+    for (const LayerInfo& info : layer_table())
+        expected.insert({info.name, info.blender_pass});
+    std::set<std::pair<std::string, std::string>> documented;
+    std::ifstream readme(OBSCURA_SOURCE_DIR "/README.md");
+    const std::regex row(R"(\| (?:`([\w.]+)`|(\(none\))) \|.*\| `(\w+)` \|)");
+    std::smatch cells;
+    for (std::string line; std::getline(readme, line);) {
+        if (std::regex_match(line, cells, row))
+            documented.insert({cells.str(1) + cells.str(2), cells.str(3)});
+    }
+    EXPECT_EQ(documented, expected);
 }
 
 TEST(BlenderNames, ALoneTextureCoordinateIsAPassOfOneChannel) {
