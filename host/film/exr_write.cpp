@@ -58,11 +58,13 @@ void check_image(const Image& image) {
     OBSCURA_CHECK(!paths.empty(), "an image without channels");
 }
 
-// Colours bear half's 11 bits; positions, normals, depths and the variances of z-tests don't.
+// Colours, grey ones (Y alone) too, bear half's 11 bits; positions, normals, depths and the variances of z-tests don't.
 bool is_color(const Layer& layer) {
     const size_t none = layer.channel_count();
-    return layer.find_channel("R") < none && layer.find_channel("G") < none &&
-           layer.find_channel("B") < none && layer.name.find("Variance") == std::string::npos;
+    const bool is_rgb =
+        layer.find_channel("R") < none && layer.find_channel("G") < none && layer.find_channel("B") < none;
+    const bool is_grey = layer.channels == std::vector<std::string>{"Y"};
+    return (is_rgb || is_grey) && layer.name.find("Variance") == std::string::npos;
 }
 
 void insert_integer(Imf::Header& header, const std::string& name, int64_t value) {

@@ -55,7 +55,7 @@ struct Image {
 };
 
 // Float channels, ZIP-compressed scanlines, display window = the whole picture, data window = the part.
-// half_color writes layers with channels R, G, B as half, except variances; values beyond half's 65504 become
+// half_color writes layers with channels R, G, B or Y alone as half, except variances; values beyond half's 65504 become
 // infinite, with a warning. Integer attributes beyond 32 bits are written as decimal text, which read_exr
 // turns back. Atomic. Throws InputError.
 void write_exr(const Image& image, const std::filesystem::path& path, bool half_color = false);

@@ -101,7 +101,8 @@ TEST(Exr, HalfColorRoundsColoursOnly) {
     ASSERT_EQ(read.layers.size(), LAYERS.size());
     for (size_t i = 0; i < LAYERS.size(); ++i) {
         const std::string& name = LAYERS[i].name;
-        const bool is_color = name.empty() || name == "obscurance" || name == "specular.direct";
+        const bool is_color =
+            name.empty() || name == "ao" || name == "obscurance" || name == "specular.direct";
         EXPECT_EQ(read.layers[i].pixels != image.layers[i].pixels, is_color) << name;
         for (size_t v = 0; v < image.layers[i].pixels.size(); ++v) {
             const float value = image.layers[i].pixels[v];
