@@ -71,17 +71,18 @@ std::vector<std::string> all_layer_names() {
     return names;
 }
 
-// "all" and "none" stand for themselves, and beauty is there anyway; anything else must be in the table.
-std::vector<std::string> resolve_layers(const std::vector<std::string>& wanted) {
+// The layers beside beauty, which is there anyway. "all" and "none" stand for themselves; anything else must be in the
+// table.
+std::vector<std::string> resolve_layers(std::vector<std::string> wanted) {
+    std::erase(wanted, "beauty");
     std::vector<std::string> known = all_layer_names();
     if (wanted == std::vector<std::string>{"all"}) return known;
     if (wanted == std::vector<std::string>{"none"}) return {};
     std::vector<std::string> layers;
     for (const std::string& name : wanted) {
-        if (name == "beauty") continue;
         if (std::ranges::find(known, name) == known.end()) {
-            throw InputError("--layers {}: there is no such layer; choose from {}, or all, or none", name,
-                             fmt::join(known, ", "));
+            throw InputError("--layers {}: there is no such layer; choose from beauty, {}, or all, or none",
+                             name, fmt::join(known, ", "));
         }
         if (std::ranges::find(layers, name) == layers.end()) layers.push_back(name);
     }
@@ -190,7 +191,9 @@ void add_render_command(CLI::App& app, ExitCode& exit_code) {
         ->check(exposure_range())
         ->capture_default_str()
         ->group(group);
-    command->add_option("--layers", out->layers, "Layers beside beauty, separated by commas; all, or none")
+    command
+        ->add_option("--layers", out->layers,
+                     "Layers, separated by commas, or all, or none; beauty is always written")
         ->delimiter(',')
         ->capture_default_str()
         ->group(group);
