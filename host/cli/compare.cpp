@@ -86,15 +86,17 @@ void keep_layer(Image& image, const std::string& title, const std::string& file)
     std::vector<std::string> titles;
     for (const Layer& layer : image.layers)
         titles.push_back(layer.title());
-    const auto found = std::ranges::find(image.layers, title, &Layer::title);
-    const Layer* chosen = found != image.layers.end() ? &*found : nullptr;
-    if (chosen == nullptr && title == "beauty") chosen = image.beauty();
-    if (chosen == nullptr) {
+    auto chosen = std::ranges::find(image.layers, title, &Layer::title);
+    if (chosen == image.layers.end() && title == "beauty")
+        chosen = std::ranges::find(image.layers, BLENDER_BEAUTY, &Layer::name);
+    if (chosen == image.layers.end()) {
         throw InputError("{}: it has no layer {}, only {}", file, title, fmt::join(titles, ", "));
     }
-    Layer kept = *chosen;
-    if (chosen == image.beauty()) kept.name.clear();
-    image.layers = {std::move(kept)};
+    const bool is_beauty = &*chosen == image.beauty();
+    Layer kept = std::move(*chosen);
+    if (is_beauty) kept.name.clear();
+    image.layers.clear();
+    image.layers.push_back(std::move(kept));
 }
 
 Verdict judge(const CompareOptions& options, const Image& image, const Image& reference) {

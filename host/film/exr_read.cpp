@@ -106,7 +106,7 @@ bool channel_before(const std::string& a, const std::string& b) {
     return key(a) < key(b);
 }
 
-// The layers of the file, without pixels, beauty first.
+// The layers of the file, without pixels, sorted by name: a beauty without one comes first.
 std::vector<Layer> list_layers(const Imf::ChannelList& channels, const std::string& file) {
     std::map<std::string, std::vector<std::string>> grouped;
     for (auto it = channels.begin(); it != channels.end(); ++it) {
