@@ -18,8 +18,8 @@ constexpr uint64_t MIN_WAVE = 64;
 // the picture (camera, film): half the range keeps the sum exact.
 constexpr uint64_t MAX_INDEX = 0x7fffffff;
 
-// The option that sets the size of the largest queue. Rays and layers alone stay below 1 KiB per slot, which no limit
-// notices.
+// The option that sets the size of the largest queue. Rays and layers alone stay below 1 KiB per slot, which fits
+// every device.
 const char* largest_queue_option(const QueueShape& shape) {
     const auto sizes = queue_sizes(shape);
     const auto largest =
@@ -75,8 +75,7 @@ uint32_t wave_capacity(const QueueShape& shape, uint64_t wanted, uint64_t memory
     if (fit_one_queue < MIN_WAVE) {
         throw InputError(
             "the largest queue takes {} for each camera sample, and the {} that {} hold {}, {} are the "
-            "least: "
-            "lower {}",
+            "least: lower {}",
             bytes_text(largest_bytes_per_slot(shape)), bytes_text(queue_bytes),
             max_allocation_bytes < INDEXED_BYTES ? "the device allows one buffer" : "31-bit indices reach",
             fit_one_queue, MIN_WAVE, largest_queue_option(shape));

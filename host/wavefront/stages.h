@@ -62,7 +62,8 @@ struct StageInfo {
     bool (*needed)(const Needs&);
     // Work items of a launch.
     uint64_t (*items)(const Work&, const QueueShape&);
-    // How many of these there really were, where only the device knows and the launch covers the most there can be; else null.
+    // Rays that the launch traced, where only the device knows: such a launch covers the most there can be. Else null: it
+    // had `items`.
     uint64_t (*counted)(const DeviceStatus&, const QueueShape&);
     std::array<Append, 3> appends;        // the rest is empty
     std::array<Argument, 15> parameters;  // of its kernel, in order; the rest is empty
