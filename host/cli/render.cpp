@@ -17,6 +17,7 @@
 #include "base/progress.h"
 #include "base/units.h"
 #include "cli/choice_option.h"
+#include "cli/interrupt.h"
 #include "cli/output_paths.h"
 #include "cli/picture_output.h"
 #include "cli/render_options.h"
@@ -42,23 +43,6 @@ struct OutputOptions {
     bool half_color = false;
     ExrNames names = ExrNames::plain;
 };
-
-std::atomic<bool> interrupted{false};
-
-// The first Ctrl-C asks the render to stop after its wave; a second one ends the program at once.
-void handle_interrupt(int signal) {
-    interrupted = true;
-    std::signal(signal, SIG_DFL);
-    static constexpr char MESSAGE[] =
-        "\nobscura: stopping after this wave; interrupt again to stop at once\n";
-    [[maybe_unused]] const auto written = write(STDERR_FILENO, MESSAGE, sizeof(MESSAGE) - 1);
-}
-
-void on_interrupt(void (*handler)(int)) {
-    std::signal(SIGINT, handler);
-    std::signal(SIGTERM, handler);
-    std::signal(SIGHUP, handler);
-}
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -141,7 +125,7 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
 
     Device device = open_device(options.device);
     ProgramLibrary library(device, options.local_size);
-    on_interrupt(handle_interrupt);
+    catch_interrupts();
     log_info("{}: {}, {}; device {}", scene.name, counted(scene.triangles.size(), "triangle"),
              counted(scene.objects.size(), "object"), device.name());
     std::unique_ptr<Progress> progress;
@@ -152,7 +136,7 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
             progress = std::make_unique<Progress>("render", "ray");
         }
         progress->update(fraction, rays.total());
-        return !interrupted.load();
+        return !is_interrupted();
     });
     if (progress) progress->finish(result.rays.total());
     progress.reset();
@@ -161,7 +145,7 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
         log_warning("stopped before the first sample: nothing is written");
         return ExitCode::interrupted;
     }
-    on_interrupt(SIG_IGN);  // writing takes a moment; ended in its midst, it would leave temporary files
+    ignore_interrupts();
     if (out.names == ExrNames::blender) use_blender_names(result.image);
     write_outputs(out, scene, device.info(), result, seconds, start);
     print_summary(result, seconds);

@@ -9,6 +9,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -84,6 +86,15 @@ struct ReferenceTracer::Embree {
         rtcReleaseScene(scene);
         rtcReleaseDevice(device);
     }
+
+    TraceHit closest(RTCIntersectContext& context, const RTCRay& ray) const {
+        RTCRayHit query{};
+        query.ray = ray;
+        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(scene, &context, &query);
+        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {ray.tfar, 0, 0, NO_PRIMITIVE};
+        return {query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID};
+    }
 };
 
 ReferenceTracer::ReferenceTracer(const Scene& scene) : embree_(std::make_unique<Embree>()) {
@@ -121,15 +132,17 @@ ReferenceTracer::~ReferenceTracer() = default;
 void ReferenceTracer::closest(std::span<const TraceRay> rays, std::span<TraceHit> hits) const {
     OBSCURA_CHECK(rays.size() == hits.size(), "{} rays, room for {} hits", rays.size(), hits.size());
     for_each_ray(rays.size(), [&](RTCIntersectContext& context, size_t i) {
-        RTCRayHit query{};
-        query.ray = embree_ray(rays[i]);
-        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(embree_->scene, &context, &query);
-        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
-            hits[i] = {rays[i].t_max, 0, 0, NO_PRIMITIVE};
-        else
-            hits[i] = {query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID};
+        hits[i] = embree_->closest(context, embree_ray(rays[i]));
     });
+}
+
+TraceHit ReferenceTracer::next(const TraceRay& ray, float after) const {
+    const FlushDenormals flush;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRay beyond = embree_ray(ray);
+    beyond.tnear = std::max(beyond.tnear, std::nextafter(after, std::numeric_limits<float>::infinity()));
+    return embree_->closest(context, beyond);
 }
 
 void ReferenceTracer::occluded(std::span<const TraceRay> rays, std::span<uint8_t> results) const {

@@ -36,6 +36,9 @@ class ReferenceTracer {
 
     // The nearest hit of each ray; both spans have the same length. All cores.
     void closest(std::span<const TraceRay> rays, std::span<TraceHit> hits) const;
+    // The nearest hit with t > after: called again with the hit's t, all hits one after the other. For threads of the
+    // caller's.
+    TraceHit next(const TraceRay& ray, float after) const;
     // 1 where anything is hit, else 0.
     void occluded(std::span<const TraceRay> rays, std::span<uint8_t> results) const;
 

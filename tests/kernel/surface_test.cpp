@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "support/capture.h"
+#include "reference/meshes.h"
+#include "reference/ray_capture.h"
 #include "support/device.h"
-#include "support/meshes.h"
 
 namespace obscura {
 namespace {
@@ -21,7 +21,7 @@ struct Corners {
 };
 
 Scene lone_triangle(const Corners& corners) {
-    test::MeshBuilder mesh;
+    MeshBuilder mesh;
     mesh.triangle(corners.a, corners.b, corners.c);
     return mesh.finish();
 }
@@ -68,7 +68,9 @@ kernel void probe(global const SceneTriangle* triangle, global const float4* hit
         const std::vector<f32x4> found = out.contents<f32x4>();
         std::vector<Point> points;
         for (size_t i = 0; i < found.size(); i += 2)
-            points.push_back({test::xyz(found[i]), test::xyz(found[i + 1]), found[i].w});
+            points.push_back({{found[i].x, found[i].y, found[i].z},
+                              {found[i + 1].x, found[i + 1].y, found[i + 1].z},
+                              found[i].w});
         return points;
     }
 
@@ -102,7 +104,7 @@ std::vector<Corners> shapes() {
 class SurfaceStage : public test::DeviceTest {
   protected:
     // Rays from all around to points of the triangle: those that hit it, with their hits.
-    static void hit_everywhere(test::DeviceTracer& tracer, const Corners& t, std::vector<TraceRay>& rays,
+    static void hit_everywhere(DeviceTracer& tracer, const Corners& t, std::vector<TraceRay>& rays,
                                std::vector<TraceHit>& hits) {
         std::mt19937 random(2);
         std::uniform_real_distribution<double> unit;
@@ -126,12 +128,13 @@ class SurfaceStage : public test::DeviceTest {
 
 TEST_F(SurfaceStage, RaysThatLeaveATriangleDoNotHitItAgain) {
     SurfaceProbe probe(device());
+    ProgramLibrary library(device());
     std::mt19937 random(3);
     std::uniform_real_distribution<double> unit;
     size_t shape = 0;
     for (const Corners& corners : shapes()) {
         SCOPED_TRACE("shape " + std::to_string(shape++));
-        test::DeviceTracer tracer(device(), build_bvh(lone_triangle(corners)));
+        DeviceTracer tracer(device(), library, build_bvh(lone_triangle(corners)));
         std::vector<TraceRay> rays;
         std::vector<TraceHit> hits;
         hit_everywhere(tracer, corners, rays, hits);
@@ -160,8 +163,9 @@ TEST_F(SurfaceStage, RaysThatLeaveATriangleDoNotHitItAgain) {
 // The offset grows with size and distance, not with the shape: gamma_7 |P| sqrt(3) + gamma_4 length, to rounding.
 TEST_F(SurfaceStage, SliversAreLiftedNoHigherThanOtherTriangles) {
     SurfaceProbe probe(device());
+    ProgramLibrary library(device());
     for (const Corners& corners : shapes()) {
-        test::DeviceTracer tracer(device(), build_bvh(lone_triangle(corners)));
+        DeviceTracer tracer(device(), library, build_bvh(lone_triangle(corners)));
         std::vector<TraceRay> rays;
         std::vector<TraceHit> hits;
         hit_everywhere(tracer, corners, rays, hits);
@@ -178,6 +182,7 @@ TEST_F(SurfaceStage, SliversAreLiftedNoHigherThanOtherTriangles) {
 
 TEST_F(SurfaceStage, NormalsOfSliversAreThoseOfTheirCorners) {
     SurfaceProbe probe(device());
+    ProgramLibrary library(device());
     const std::vector<Corners> all = shapes();
     for (const Corners& corners :
          {all.front(), all.back(), Corners{{0, 0, 0}, {1, 0, 0}, {0.5f, 0, 1e-7f}}}) {

@@ -5,7 +5,7 @@
 
 #include "bvh/bvh.h"
 #include "bvh/layout.h"
-#include "support/brute_force.h"
+#include "reference/brute_force.h"
 
 #include <algorithm>
 #include <array>

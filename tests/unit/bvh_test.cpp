@@ -7,10 +7,10 @@
 #include "bvh/clip.h"
 #include "bvh/collapse.h"
 #include "bvh/layout.h"
-#include "support/brute_force.h"
+#include "reference/brute_force.h"
+#include "reference/hard_rays.h"
+#include "reference/meshes.h"
 #include "support/bvh_traversal.h"
-#include "support/meshes.h"
-#include "support/rays.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -22,8 +22,6 @@
 namespace obscura {
 namespace {
 
-using test::BruteForce;
-using test::BruteHit;
 using test::TraversalCounts;
 
 constexpr BvhQuality QUALITIES[] = {BvhQuality::low, BvhQuality::medium, BvhQuality::high};
@@ -35,16 +33,16 @@ struct NamedScene {
 
 std::vector<NamedScene> all_scenes() {
     std::vector<NamedScene> scenes;
-    scenes.push_back({"icosphere", test::icosphere(4)});
-    scenes.push_back({"far from the origin", test::icosphere(3, 1, V3f(1e5F, -1e5F, 1e5F))});
-    scenes.push_back({"soup", test::triangle_soup(1500, 0.1F, 1, 1)});
-    scenes.push_back({"slivers", test::triangle_soup(1500, 1, 1e-4F, 2)});
-    scenes.push_back({"grid", test::flat_grid(40)});
-    scenes.push_back({"one triangle", test::identical_triangles(1)});
-    scenes.push_back({"two triangles", test::identical_triangles(2)});
-    scenes.push_back({"125 identical triangles", test::identical_triangles(125)});
-    scenes.push_back({"nested scales", test::nested_scales(100)});
-    scenes.push_back({"slowly nested scales", test::nested_scales(600, 0.9F)});
+    scenes.push_back({"icosphere", icosphere(4)});
+    scenes.push_back({"far from the origin", icosphere(3, 1, V3f(1e5F, -1e5F, 1e5F))});
+    scenes.push_back({"soup", triangle_soup(1500, 0.1F, 1, 1)});
+    scenes.push_back({"slivers", triangle_soup(1500, 1, 1e-4F, 2)});
+    scenes.push_back({"grid", flat_grid(40)});
+    scenes.push_back({"one triangle", identical_triangles(1)});
+    scenes.push_back({"two triangles", identical_triangles(2)});
+    scenes.push_back({"125 identical triangles", identical_triangles(125)});
+    scenes.push_back({"nested scales", nested_scales(100)});
+    scenes.push_back({"slowly nested scales", nested_scales(600, 0.9F)});
     scenes.push_back({"no triangles", Scene()});
     return scenes;
 }
@@ -62,7 +60,7 @@ void expect_same_hits(const Bvh& bvh, const Scene& scene, const std::vector<Trac
     for (size_t i = 0; i < rays.size(); ++i) {
         TraversalCounts counts;
         const BruteHit found =
-            test::traverse_closest(bvh, test::brute_ray(rays[i]), static_cast<double>(rays[i].t_max), counts);
+            test::traverse_closest(bvh, brute_ray(rays[i]), static_cast<double>(rays[i].t_max), counts);
         ASSERT_EQ(found.primitive, expected[i].primitive) << "ray " << i;
         ASSERT_EQ(found.t, expected[i].t) << "ray " << i;
         ASSERT_LE(counts.stack_entries, bvh.stack_entries) << "ray " << i;
@@ -81,10 +79,10 @@ TEST(Bvh, FindsWhatBruteForceFinds) {
         for (const BvhQuality quality : QUALITIES) {
             SCOPED_TRACE(named.name);
             const Bvh bvh = build_bvh(named.scene, quality);
-            expect_same_hits(bvh, named.scene, test::random_rays(named.scene, 300, 1));
-            expect_same_hits(bvh, named.scene, test::edge_rays(named.scene, 300, 2));
-            expect_same_hits(bvh, named.scene, test::vertex_rays(named.scene, 100, 3));
-            expect_same_hits(bvh, named.scene, test::axis_rays(named.scene, 300, 4));
+            expect_same_hits(bvh, named.scene, random_rays(named.scene, 300, 1));
+            expect_same_hits(bvh, named.scene, edge_rays(named.scene, 300, 2));
+            expect_same_hits(bvh, named.scene, vertex_rays(named.scene, 100, 3));
+            expect_same_hits(bvh, named.scene, axis_rays(named.scene, 300, 4));
         }
     }
 }
@@ -99,18 +97,18 @@ TEST(Bvh, EmptySceneHasOneEmptyNode) {
 }
 
 TEST(Bvh, HundredThousandIdenticalTrianglesFit) {
-    const Scene scene = test::identical_triangles(100000);
+    const Scene scene = identical_triangles(100000);
     for (const BvhQuality quality : QUALITIES) {
         const Bvh bvh = build_bvh(scene, quality);
         EXPECT_EQ(check_bvh(bvh, scene), "");
         TraversalCounts counts;
         const TraceRay ray{V3f(0.25F, 0.25F, 5), V3f(0, 0, -1), 10};
-        EXPECT_EQ(test::traverse_closest(bvh, test::brute_ray(ray), 10, counts).primitive, 0U);
+        EXPECT_EQ(test::traverse_closest(bvh, brute_ray(ray), 10, counts).primitive, 0U);
     }
 }
 
 TEST(Bvh, SameBitsForAnyNumberOfThreads) {
-    for (const Scene& scene : {test::icosphere(5), test::triangle_soup(5000, 0.3F, 1e-3F, 3)}) {
+    for (const Scene& scene : {icosphere(5), triangle_soup(5000, 0.3F, 1e-3F, 3)}) {
         for (const BvhQuality quality : QUALITIES) {
             const Bvh first = build_bvh(scene, quality);
             const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 7);
@@ -124,13 +122,13 @@ TEST(Bvh, SameBitsForAnyNumberOfThreads) {
 }
 
 TEST(Bvh, BlocksOfMeshesAreMoreThanThreeQuartersFull) {
-    for (const Scene& scene : {test::icosphere(5), test::flat_grid(80)})
+    for (const Scene& scene : {icosphere(5), flat_grid(80)})
         for (const BvhQuality quality : QUALITIES)
             EXPECT_GT(measure_bvh(build_bvh(scene, quality)).block_fill, 3.0);
 }
 
 TEST(Bvh, BetterQualityCostsLess) {
-    const Scene scene = test::triangle_soup(10000, 0.5F, 1e-3F, 5);
+    const Scene scene = triangle_soup(10000, 0.5F, 1e-3F, 5);
     const double low = measure_bvh(build_bvh(scene, BvhQuality::low)).sah_cost;
     const double medium = measure_bvh(build_bvh(scene, BvhQuality::medium)).sah_cost;
     const double high = measure_bvh(build_bvh(scene, BvhQuality::high)).sah_cost;
@@ -139,14 +137,14 @@ TEST(Bvh, BetterQualityCostsLess) {
 }
 
 TEST(Bvh, FourTrianglesAreOneFullBlock) {
-    const Bvh bvh = build_bvh(test::identical_triangles(4));
+    const Bvh bvh = build_bvh(identical_triangles(4));
     ASSERT_EQ(bvh.blocks.size(), 1U);
     for (size_t slot = 0; slot < BLOCK_WIDTH; ++slot)
         EXPECT_EQ(block_primitive(bvh.blocks[0], slot), slot);
 }
 
 TEST(Bvh, PowerOfTwoScaleGivesTheSameTree) {
-    Scene scene = test::triangle_soup(2000, 0.2F, 0.1F, 6);
+    Scene scene = triangle_soup(2000, 0.2F, 0.1F, 6);
     const Bvh original = build_bvh(scene);
     for (Vertex& vertex : scene.vertices)
         vertex.position *= 0x1p-20F;
@@ -163,7 +161,7 @@ TEST(Bvh, PowerOfTwoScaleGivesTheSameTree) {
 }
 
 TEST(Collapse, NarrowerNodesNeedLessStack) {
-    const Scene scene = test::triangle_soup(5000, 0.1F, 1, 7);
+    const Scene scene = triangle_soup(5000, 0.1F, 1, 7);
     const BinaryTree tree = build_binary_tree(scene, BvhQuality::medium);
     uint32_t needed = collapse(tree, scene, BVH_WIDTH).stack_entries;
     for (const uint32_t width : {6U, 4U, 2U}) {
@@ -176,7 +174,7 @@ TEST(Collapse, NarrowerNodesNeedLessStack) {
 
 // Both ways out of trees that are too deep: narrower nodes, and the median where Embree's builder gives up.
 TEST(Bvh, ClustersWithinClustersFitTheStack) {
-    const Scene scene = test::nested_clusters(300);
+    const Scene scene = nested_clusters(300);
     EXPECT_TRUE(build_binary_tree(scene, BvhQuality::low).nodes.empty());
     const BinaryTree deep = build_binary_tree(scene, BvhQuality::medium);
     EXPECT_GT(collapse(deep, scene, BVH_WIDTH).stack_entries, static_cast<uint32_t>(BVH_STACK_SIZE));
@@ -193,7 +191,7 @@ TEST(Collapse, MedianTreeHoldsForEveryMesh) {
 
 // Each corruption of a good tree is found.
 TEST(CheckBvh, FindsEachKindOfDamage) {
-    const Scene scene = test::icosphere(3);
+    const Scene scene = icosphere(3);
     const Bvh good = build_bvh(scene);
     const auto damaged = [&](const auto& damage) {
         Bvh bvh = good;
@@ -217,7 +215,7 @@ TEST(CheckBvh, FindsEachKindOfDamage) {
 }
 
 TEST(CheckBvh, FindsAGapBetweenThePartsOfASplitTriangle) {
-    const Scene scene = test::triangle_soup(2000, 1, 1e-3F, 8);
+    const Scene scene = triangle_soup(2000, 1, 1e-3F, 8);
     Bvh bvh = build_bvh(scene);
     ASSERT_GT(measure_bvh(bvh).references, scene.triangles.size());
     ASSERT_EQ(check_bvh(bvh, scene), "");

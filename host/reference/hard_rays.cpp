@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays for tests of tracers: random, aimed at edges and vertices, and along the axes. Pure functions of their
-// arguments.
-#pragma once
-
-#include "reference/tracer.h"
-#include "scene/scene.h"
+#include "reference/hard_rays.h"
 
 #include <algorithm>
 #include <limits>
 #include <random>
-#include <vector>
 
-namespace obscura::test {
+namespace obscura {
+namespace {
 
-inline Box3f bounds_or_unit(const Scene& scene) {
+Box3f bounds_or_unit(const Scene& scene) {
     return scene.triangles.empty() ? Box3f(V3f(0, 0, 0), V3f(1, 1, 1)) : scene.bounds;
 }
 
@@ -40,22 +35,7 @@ class RayRandom {
     std::mt19937 random_;
 };
 
-// From anywhere around the scene into any direction, half of them with a limited reach.
-inline std::vector<TraceRay> random_rays(const Scene& scene, size_t count, uint32_t seed) {
-    RayRandom random(seed);
-    const Box3f box = bounds_or_unit(scene);
-    std::vector<TraceRay> rays;
-    for (size_t i = 0; i < count; ++i) {
-        const float reach = random.unit() * box.size().length();
-        const V3f origin = random.around(box);
-        const V3f direction = random.direction();
-        rays.push_back({origin, direction, i % 2 == 0 ? std::numeric_limits<float>::infinity() : reach});
-    }
-    return rays;
-}
-
-// Aimed, as well as floats can, at points of edges; along(random) = 0 is the edge's first vertex, 1 its
-// second.
+// along(random): 0 is the edge's first vertex, 1 its second.
 template <typename Along>
 std::vector<TraceRay> aimed_rays(const Scene& scene, size_t count, uint32_t seed, const Along& along) {
     RayRandom random(seed);
@@ -73,17 +53,30 @@ std::vector<TraceRay> aimed_rays(const Scene& scene, size_t count, uint32_t seed
     return rays;
 }
 
-inline std::vector<TraceRay> edge_rays(const Scene& scene, size_t count, uint32_t seed) {
+}  // namespace
+
+std::vector<TraceRay> random_rays(const Scene& scene, size_t count, uint32_t seed) {
+    RayRandom random(seed);
+    const Box3f box = bounds_or_unit(scene);
+    std::vector<TraceRay> rays;
+    for (size_t i = 0; i < count; ++i) {
+        const float reach = random.unit() * box.size().length();
+        const V3f origin = random.around(box);
+        const V3f direction = random.direction();
+        rays.push_back({origin, direction, i % 2 == 0 ? std::numeric_limits<float>::infinity() : reach});
+    }
+    return rays;
+}
+
+std::vector<TraceRay> edge_rays(const Scene& scene, size_t count, uint32_t seed) {
     return aimed_rays(scene, count, seed, [](RayRandom& random) { return 0.01F + 0.98F * random.unit(); });
 }
 
-inline std::vector<TraceRay> vertex_rays(const Scene& scene, size_t count, uint32_t seed) {
+std::vector<TraceRay> vertex_rays(const Scene& scene, size_t count, uint32_t seed) {
     return aimed_rays(scene, count, seed, [](RayRandom&) { return 0.0F; });
 }
 
-// Along the six axis directions, with both signs of zero in the other components, from points whose
-// coordinates are vertex coordinates half of the time: inside faces of boxes and planes of triangles.
-inline std::vector<TraceRay> axis_rays(const Scene& scene, size_t count, uint32_t seed) {
+std::vector<TraceRay> axis_rays(const Scene& scene, size_t count, uint32_t seed) {
     RayRandom random(seed);
     const Box3f box = bounds_or_unit(scene);
     std::vector<TraceRay> rays;
@@ -101,4 +94,4 @@ inline std::vector<TraceRay> axis_rays(const Scene& scene, size_t count, uint32_
     return rays;
 }
 
-}  // namespace obscura::test
+}  // namespace obscura

@@ -1,54 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Procedural meshes for tests of geometry: closed, random, thin, huge, tiny and degenerate ones. Everything
-// is a pure function of its arguments.
-#pragma once
-
-#include "scene/scene.h"
+#include "reference/meshes.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <map>
 #include <random>
-#include <utility>
 #include <vector>
 
-namespace obscura::test {
+namespace obscura {
 
-class MeshBuilder {
-  public:
-    uint32_t vertex(const V3f& position) {
-        scene_.vertices.push_back({position, V3f(0, 0, 0), Imath::V2f(0, 0)});
-        return static_cast<uint32_t>(scene_.vertices.size()) - 1;
-    }
-
-    void triangle(uint32_t a, uint32_t b, uint32_t c) {
-        scene_.triangles.push_back({{a, b, c}, 0, 0});
-        for (const uint32_t corner : {a, b, c})
-            scene_.bounds.extendBy(scene_.vertices[corner].position);
-    }
-
-    void triangle(const V3f& a, const V3f& b, const V3f& c) {
-        const uint32_t first = vertex(a);
-        vertex(b);
-        vertex(c);
-        triangle(first, first + 1, first + 2);
-    }
-
-    Scene finish() {
-        scene_.name = "test";
-        scene_.materials.resize(1);
-        scene_.objects = {{"mesh", 0, static_cast<uint32_t>(scene_.triangles.size())}};
-        return std::move(scene_);
-    }
-
-  private:
-    Scene scene_;
-};
-
-// A closed sphere of 20 * 4^levels triangles, seen from outside counter-clockwise.
-inline Scene icosphere(int levels, float radius = 1, const V3f& center = V3f(0, 0, 0)) {
+Scene icosphere(int levels, float radius, const V3f& center) {
     const double phi = 0.5 * (1 + std::sqrt(5.0));
     std::vector<V3d> points{{-1, phi, 0}, {1, phi, 0}, {-1, -phi, 0}, {1, -phi, 0},
                             {0, -1, phi}, {0, 1, phi}, {0, -1, -phi}, {0, 1, -phi},
@@ -84,9 +46,7 @@ inline Scene icosphere(int levels, float radius = 1, const V3f& center = V3f(0, 
     return mesh.finish();
 }
 
-// Random triangles in the unit cube. longest: edge length of the longest triangles; thinness: 1 = equilateral
-// in the mean, 1e-6 = slivers.
-inline Scene triangle_soup(uint32_t count, float longest, float thinness, uint32_t seed) {
+Scene triangle_soup(uint32_t count, float longest, float thinness, uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> unit(0, 1);
     std::uniform_real_distribution<float> both(-1, 1);
@@ -104,8 +64,7 @@ inline Scene triangle_soup(uint32_t count, float longest, float thinness, uint32
     return mesh.finish();
 }
 
-// A plane of 2 * side^2 triangles in z = 0, from 0 to 1; many boxes are flat and many centroids equal.
-inline Scene flat_grid(uint32_t side) {
+Scene flat_grid(uint32_t side) {
     MeshBuilder mesh;
     for (uint32_t y = 0; y <= side; ++y)
         for (uint32_t x = 0; x <= side; ++x)
@@ -120,8 +79,7 @@ inline Scene flat_grid(uint32_t side) {
     return mesh.finish();
 }
 
-// The same triangle again and again.
-inline Scene identical_triangles(uint32_t count) {
+Scene identical_triangles(uint32_t count) {
     MeshBuilder mesh;
     mesh.vertex(V3f(0, 0, 0));
     mesh.vertex(V3f(1, 0, 0.25F));
@@ -131,9 +89,7 @@ inline Scene identical_triangles(uint32_t count) {
     return mesh.finish();
 }
 
-// Triangles with one common corner, each ratio times the size of the one before; the smallest stay above the
-// denormal floats. A binary tree by surface area peels them off one by one.
-inline Scene nested_scales(uint32_t count, float ratio = 0.5F) {
+Scene nested_scales(uint32_t count, float ratio) {
     MeshBuilder mesh;
     float size = 1;
     for (uint32_t i = 0; i < count; ++i, size *= ratio)
@@ -141,9 +97,7 @@ inline Scene nested_scales(uint32_t count, float ratio = 0.5F) {
     return mesh.finish();
 }
 
-// Clusters of small triangles on a line, each half as far from the origin as the one before, down to 1e-36: a
-// builder that halves space has to go deeper than any stack.
-inline Scene nested_clusters(uint32_t triangles_per_cluster) {
+Scene nested_clusters(uint32_t triangles_per_cluster) {
     MeshBuilder mesh;
     for (float distance = 1; distance > 1e-36F; distance *= 0.5F) {
         for (uint32_t i = 0; i < triangles_per_cluster; ++i) {
@@ -156,4 +110,4 @@ inline Scene nested_clusters(uint32_t triangles_per_cluster) {
     return mesh.finish();
 }
 
-}  // namespace obscura::test
+}  // namespace obscura

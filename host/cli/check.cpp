@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// See check.h.
+#include "cli/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/log.h"
+#include "base/progress.h"
+#include "cli/interrupt.h"
+#include "cli/json_output.h"
+#include "cli/output_paths.h"
+#include "cli/render_options.h"
+#include "reference/check.h"
+#include "reference/self_test.h"
+#include "scene/gltf.h"
+
+namespace obscura {
+namespace {
+
+struct CheckOptions {
+    std::string json;
+    std::vector<float> ray;  // origin, direction, reach
+    bool self_test = false;
+    std::string only;  // cases of the self-test
+};
+
+Json to_json(const HitTally& tally) {
+    return {{"rays", tally.rays},
+            {"hits", tally.hits},
+            {"device_wrong", tally.device_wrong},
+            {"embree_wrong", tally.embree_wrong},
+            {"ties", tally.ties},
+            {"edges", tally.edges},
+            {"judged", tally.judged},
+            {"distance_error_of_bound", tally.distance_share},
+            {"weight_error_of_bound", tally.weight_share},
+            {"distance_error_relative", tally.distance_relative},
+            {"distance_error_ulps", tally.distance_ulps}};
+}
+
+// All rows together.
+QueueCheck sum(const std::vector<QueueCheck>& rows) {
+    QueueCheck all{"all", {}, {}, true};
+    for (const QueueCheck& row : rows)
+        all.rays.add(row.rays);
+    return all;
+}
+
+// rendered: rays that the render counted.
+Json to_json(const std::vector<QueueCheck>& rows, const char* title, uint64_t rendered) {
+    Json json = to_json(sum(rows).rays);
+    json["rendered_rays"] = rendered;
+    json["passed"] = std::ranges::all_of(rows, &QueueCheck::passes);
+    for (const QueueCheck& row : rows) {
+        Json numbers = to_json(row.rays);
+        if (row.results.checked > 0) {
+            numbers["results"] = {{"checked", row.results.checked},
+                                  {"behind_panes", row.results.behind_panes},
+                                  {"error_of_bound", row.results.worst_share},
+                                  {"error", row.results.worst}};
+        }
+        numbers["disagreements"] = Json::array();
+        for (const Disagreement& ray : row.rays.disagreements) {
+            numbers["disagreements"].push_back({{"outcome", outcome_text(ray.outcome)},
+                                                {"ray", ray_text(ray.ray)},
+                                                {"device", ray.device},
+                                                {"expected", ray.expected}});
+        }
+        json[title][row.name] = std::move(numbers);
+    }
+    return json;
+}
+
+void print_table(const std::vector<QueueCheck>& rows, const std::string& title) {
+    size_t width = title.size();
+    for (const QueueCheck& row : rows)
+        width = std::max(width, row.name.size());
+    fmt::print("{:<{}}  {:>10}  {:>10}  {:>6}  {:>6}  {:>12}  {:>12}  {:>8}  {:>8}  {:>8}\n", title, width,
+               "rays", "hits", "ties", "edges", "Embree wrong", "device wrong", "distance", "weights",
+               "results");
+    const auto print_row = [&](const QueueCheck& row) {
+        const HitTally& rays = row.rays;
+        const std::string results =
+            row.results.checked > 0 ? fmt::format("{:.3f}", row.results.worst_share) : "";
+        fmt::print("{:<{}}  {:>10}  {:>10}  {:>6}  {:>6}  {:>12}  {:>12}  {:>8.3f}  {:>8.3f}  {:>8}\n",
+                   row.name, width, rays.rays, rays.hits, rays.ties, rays.edges, rays.embree_wrong,
+                   rays.device_wrong, rays.distance_share, rays.weight_share, results);
+    };
+    std::ranges::for_each(rows, print_row);
+    print_row(sum(rows));
+    fmt::print("The last three columns: the device's largest error, as a share of what rounding explains.\n");
+}
+
+void print_failures(const std::vector<QueueCheck>& rows) {
+    for (const QueueCheck& row : rows) {
+        if (row.rays.device_wrong == 0 && !row.passes())
+            fmt::print("{}: more than {} of the rays are in doubt\n", row.name, MAX_DOUBTFUL_SHARE);
+        for (const Disagreement& ray : row.rays.disagreements) {
+            if (ray.outcome != Outcome::device_wrong) continue;
+            fmt::print("{}: device {}; expected {}\n    --ray={}\n", row.name, ray.device, ray.expected,
+                       ray_text(ray.ray));
+        }
+    }
+}
+
+// Table or JSON, and the verdict. title: what the rows are.
+ExitCode report(const CheckOptions& options, const std::vector<QueueCheck>& rows, const char* title,
+                uint64_t rendered) {
+    const bool passed = std::ranges::all_of(rows, &QueueCheck::passes);
+    if (options.json.empty()) {
+        print_table(rows, title);
+        print_failures(rows);
+        fmt::print("{}\n", passed ? "No hit is wrong." : "The check failed.");
+    } else {
+        write_json(options.json, to_json(rows, title, rendered));
+    }
+    return passed ? ExitCode::ok : ExitCode::check_failed;
+}
+
+TraceRay make_ray(const std::vector<float>& numbers) {
+    const TraceRay ray{
+        {numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}, numbers[6]};
+    const float length = ray.direction.length();
+    if (!std::isfinite(ray.origin.length()) || !std::isfinite(length) || !(length > 0) || !(ray.t_max > 0))
+        throw InputError(
+            "--ray {}: origin and direction must be finite, the direction not 0, the reach above 0",
+            ray_text(ray));
+    return ray;
+}
+
+std::string oracle_text(const BruteHit& truth) {
+    if (!truth.hit()) return "no hit";
+    return fmt::format("triangle {} at {:.17g}, u {:.17g}, v {:.17g}, {:.3g} inside its nearest edge",
+                       truth.primitive, truth.t, truth.u, truth.v, truth.inside_by());
+}
+
+ExitCode run_ray(const RenderOptions& options, const CheckOptions& check, const Scene& scene, Device& device,
+                 ProgramLibrary& library) {
+    const TraceRay ray = make_ray(check.ray);
+    const RayCheck answer = check_ray(device, library, scene, ray, options.portable);
+    fmt::print("device   {}\nEmbree   {}\noracle   {}\nverdict  {}\n", hit_text(answer.device),
+               hit_text(answer.embree), oracle_text(answer.truth), outcome_text(answer.outcome));
+    return answer.outcome == Outcome::device_wrong ? ExitCode::check_failed : ExitCode::ok;
+}
+
+ExitCode run_scene(const RenderOptions& options, const CheckOptions& check, const Scene& scene,
+                   Device& device, ProgramLibrary& library) {
+    catch_interrupts();
+    Progress progress("check", "ray");
+    const RenderJob job{
+        scene, settings_of(options), {}, parse_bytes(options.memory), options.wave_size, options.portable};
+    const SceneCheck result = check_scene(device, library, job, [&](double fraction, const RayCounts& rays) {
+        progress.update(fraction, rays.total());
+        return !is_interrupted();
+    });
+    progress.finish(result.rendered.total());
+    const ExitCode exit_code =
+        report(check, {result.queues.begin(), result.queues.end()}, "queues", result.rendered.total());
+    if (!is_interrupted()) return exit_code;
+    log_warning("stopped early: the rays so far were checked");
+    return exit_code == ExitCode::ok ? ExitCode::interrupted : exit_code;
+}
+
+ExitCode run_check(const RenderOptions& options, const CheckOptions& check) {
+    set_quiet(options.quiet);
+    if (check.self_test != options.scene.empty())
+        throw InputError(check.self_test ? "--self-test takes no scene"
+                                         : "A scene is needed, or --self-test");
+    check_outputs({{"--json", check.json}}, {options.scene});
+    if (check.self_test) {
+        Device device = open_device(options.device);
+        ProgramLibrary library(device, options.local_size);
+        const std::vector<QueueCheck> rows = self_test(device, library, options.portable, check.only);
+        if (rows.empty()) throw InputError("--case {}: no case of the self-test has such a name", check.only);
+        return report(check, rows, "cases", sum(rows).rays.rays);
+    }
+    const std::filesystem::path file = find_scene_file(options.scene);
+    const Scene scene = load_gltf(file);
+    Device device = open_device(options.device);
+    ProgramLibrary library(device, options.local_size);
+    return check.ray.empty() ? run_scene(options, check, scene, device, library)
+                             : run_ray(options, check, scene, device, library);
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app, ExitCode& exit_code) {
+    CLI::App* command = app.add_subcommand(
+        "check", "Check every ray of a render against Embree and an oracle; exit code 1 if one is wrong");
+    const auto options = add_render_options(*command);
+    command->get_option("scene")->required(false);
+    const auto check = std::make_shared<CheckOptions>();
+    const char* group = "Check";
+    CLI::Option* const self_test =
+        command->add_flag("--self-test", check->self_test, "Check built-in hard geometry instead of a scene")
+            ->group(group);
+    command->add_option("--case", check->only, "Only the cases of the self-test whose name contains this")
+        ->needs(self_test)
+        ->group(group);
+    command->add_option("--ray", check->ray, "Check one ray: origin, direction, and its reach in directions")
+        ->delimiter(',')
+        ->expected(7)
+        ->type_name("X,Y,Z,DX,DY,DZ,T")
+        ->excludes(self_test)
+        ->group(group);
+    command->add_option("--json", check->json, "Write the numbers to a file (- for standard output)")
+        ->type_name("FILE.json|-")
+        ->group(group);
+    command->callback([options, check, &exit_code] { exit_code = run_check(*options, *check); });
+}
+
+}  // namespace obscura

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// The device's rays and hits, brought to the host: the real ones of a render (RayCapture looks at its queues between two
+// depths), and those of any rays (DeviceTracer). Obscurance rays are never stored by a render, so a kernel of its own
+// makes them again with the very functions of the stage.
+#pragma once
+
+#include "bvh/bvh.h"
+#include "device/program.h"
+#include "reference/tracer.h"
+#include "wavefront/scheduler.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace obscura {
+
+// Rays of one queue at one depth, and what the device made of them.
+struct CapturedRays {
+    std::vector<TraceRay> rays;
+    std::vector<TraceHit> hits;  // not of shadow rays: they ask only whether anything is in the way
+    // Of obscurance rays: where each starts relative to its point, from which distances count.
+    std::vector<V3f> starts;
+    // Of shadow rays the share of light that comes through, of obscurance rays what they bring back.
+    std::vector<f32x4> results;
+};
+
+class RayCapture {
+  public:
+    // options: build options of the render's kernels.
+    RayCapture(Device& device, ProgramLibrary& library, const Bvh& bvh, const std::string& options = {});
+
+    CapturedRays traced(const DepthView& view, const Frame& frame, const Queues& queues) const;
+    CapturedRays shadow(const DepthView& view, const Frame& frame, const Queues& queues) const;
+    // The K rays of each obscurance point.
+    CapturedRays obscurance(const DepthView& view, const Frame& frame, const Queues& queues);
+
+  private:
+    Device& device_;
+    uint32_t local_size_;
+    Buffer nodes_, blocks_, out_;
+    cl::Kernel kernel_;
+};
+
+// The device's traversal with the reference tracer's interface.
+class DeviceTracer {
+  public:
+    DeviceTracer(Device& device, ProgramLibrary& library, const Bvh& bvh, const std::string& options = {});
+
+    std::vector<TraceHit> closest(std::span<const TraceRay> rays) const { return trace(rays, false); }
+    // 1 where anything is hit, else 0.
+    std::vector<uint8_t> occluded(std::span<const TraceRay> rays) const;
+
+  private:
+    std::vector<TraceHit> trace(std::span<const TraceRay> rays, bool any_hit) const;
+
+    Device& device_;
+    uint32_t local_size_;
+    Buffer nodes_, blocks_;
+    cl::Kernel kernel_;
+};
+
+}  // namespace obscura

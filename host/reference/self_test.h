@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// `obscura check --self-test`: geometry and rays that break careless tracers, made by code, on the device of choice.
+#pragma once
+
+#include "reference/check.h"
+
+#include <string>
+#include <vector>
+
+namespace obscura {
+
+// One row per case. The rays of the first cases go through the traversal alone, and any-hit queries have to agree with
+// closest hits: a ray where they don't counts as wrong. The last rows are the queues of a small render.
+// only: part of the names of the cases that are run; all if empty.
+std::vector<QueueCheck> self_test(Device& device, ProgramLibrary& library, bool portable,
+                                  const std::string& only);
+
+}  // namespace obscura

@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# `obscura check`: the kitchen at the paper's settings has no wrong ray, and kernels with an error planted are found out.
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.environ["OBSCURA_PROGRAM"]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+# What goes wrong, the cases of the self-test that show it, the file, its text and what replaces that.
+MUTANTS = [
+    ("the last triangle of each block is dropped", "triangle soup", "lib/traverse.clh", "inside & (det != 0.0f));", "inside & (det != 0.0f)) & 7u;"),
+    ("< for <= at edges", "inside, edges", "lib/traverse.clh", "(least >= 0.0f) | (most <= 0.0f)", "(least > 0.0f) | (most < 0.0f)"),
+    ("no slab padding", "inside", "lib/traverse.clh", "(1.0f + 2.0f * GAMMA(9))", "1.0f"),
+    ("swapped children", "triangle soup", "lib/traverse.clh", "child = children[lane];", "child = children[lane ^ 1u];"),
+    ("the next primitive", "triangle soup", "lib/traverse.clh", "hit->primitive = primitive;", "hit->primitive = primitive ^ 1u;"),
+    ("distances too long by 1e-5", "triangle soup", "lib/traverse.clh", "hit->t = ts[lane];", "hit->t = 1.00001f * ts[lane];"),
+    ("weights of other corners", "triangle soup", "lib/traverse.clh", "hit->u = vs[lane];", "hit->u = ws[lane];"),
+    ("d from the offset origin", "room", "obscurance.cl", "length(start + hit.t * direction)", "length(hit.t * direction)"),
+    ("rho for another d_max", "room", "obscurance.cl", "* frame->obscurance.y;", "* (1.001f * frame->obscurance.y);"),
+    ("rays beyond d_max", "room", "lib/obscurance_ray.clh", "sqrt(fmax(0.0f, d_max * d_max - across2)) - along", "2.0f * d_max"),
+    ("colours from the wrong corner", "room", "obscurance.cl", "texels, tables, hit.u, hit.v)", "texels, tables, hit.v, hit.u)"),
+    ("shadow rays that stop half-way", "room", "shadow.cl", "direction, t_light, any_hit);", "direction, 0.5f * t_light, any_hit);"),
+    ("panes that dim too little", "room", "lib/pane.clh", "(1.0f - pane_reflectance(cosine))", "(1.0f - 0.99f * pane_reflectance(cosine))"),
+]
+
+
+def check(*arguments, environment=None):
+    """Exit code and numbers of a check."""
+    result = subprocess.run([PROGRAM, "check", *arguments, "--quiet", "--json", "-"], capture_output=True, text=True, check=False,
+                            env={**os.environ, **(environment or {})})
+    if result.returncode == 3 and os.environ.get("OBSCURA_REQUIRE_DEVICE") != "1":
+        raise unittest.SkipTest("there is no OpenCL device: " + result.stderr)
+    if result.returncode not in (0, 1):
+        raise AssertionError(result.stderr)
+    return result.returncode, json.loads(result.stdout)
+
+
+class Check(unittest.TestCase):
+    def test_kitchen_has_no_wrong_ray(self):
+        code, numbers = check(ROOT / "scenes/kitchen")
+        for name, queue in numbers["queues"].items():
+            with self.subTest(queue=name):
+                self.assertEqual(0, queue["device_wrong"], queue["disagreements"])
+                self.assertGreater(queue["rays"], 10**6)
+                self.assertLess(queue["distance_error_of_bound"], 1)
+                self.assertLess(queue["weight_error_of_bound"], 1)
+        for name in ("shadow", "obscurance"):
+            results = numbers["queues"][name]["results"]
+            self.assertLess(results["error_of_bound"], 1)
+            self.assertGreater(results["checked"], 0.99 * numbers["queues"][name]["rays"])
+            self.assertGreater(results["behind_panes"], 1000)
+        self.assertEqual(800 * 600 * 8, numbers["queues"]["camera"]["rays"])
+        self.assertEqual(numbers["rendered_rays"], numbers["rays"])
+        self.assertEqual(0, code)
+
+    def test_one_ray_is_replayed(self):
+        down = [PROGRAM, "check", ROOT / "scenes/cornell", "--quiet", "--ray"]
+        for ray, verdict in (("0.1,1,0.1,0,-1,0,inf", "verdict  the same"), ("0.1,1,0.1,0,1,0,0.001", "device   no hit")):
+            result = subprocess.run([*down, ray], capture_output=True, text=True, check=False)
+            if result.returncode == 3 and os.environ.get("OBSCURA_REQUIRE_DEVICE") != "1":
+                self.skipTest("there is no OpenCL device: " + result.stderr)
+            self.assertEqual(0, result.returncode, result.stderr)
+            self.assertIn(verdict, result.stdout)
+        for ray in ("", "1,2,3", "0,0,0,0,0,0,1", "0,0,0,0,0,1,1,1", "a,0,0,0,0,1,1", "0,0,0,0,0,1,nan"):
+            result = subprocess.run([*down, ray], capture_output=True, text=True, check=False)
+            self.assertEqual(2, result.returncode, ray)
+            self.assertIn("--ray", result.stderr)
+
+    def test_scene_or_self_test_not_both(self):
+        for arguments in ([], [ROOT / "scenes/cornell", "--self-test"], ["--self-test", "--case", "nothing"]):
+            result = subprocess.run([PROGRAM, "check", *arguments], capture_output=True, text=True, check=False)
+            self.assertEqual(2, result.returncode, result.stderr)
+
+    def test_self_test_finds_planted_errors(self):
+        code, numbers = check("--self-test")
+        self.assertEqual((0, 0), (code, numbers["device_wrong"]))
+        for what, cases, file, text, replacement in MUTANTS:
+            with self.subTest(what), tempfile.TemporaryDirectory() as folder:
+                kernels = pathlib.Path(folder) / "kernels"
+                subprocess.run(["cp", "-r", ROOT / "kernels", kernels], check=True)
+                source = (kernels / file).read_text()
+                self.assertEqual(1, source.count(text), text)
+                (kernels / file).write_text(source.replace(text, replacement))
+                code, numbers = check("--self-test", "--case", cases, environment={"OBSCURA_KERNEL_DIR": str(kernels), "OBSCURA_CACHE_DIR": folder})
+                self.assertEqual(1, code)
+                self.assertGreater(numbers["device_wrong"], 0)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
