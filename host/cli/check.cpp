@@ -124,8 +124,7 @@ ExitCode report(const CheckOptions& options, const std::vector<QueueCheck>& rows
 }
 
 TraceRay make_ray(const std::vector<float>& numbers) {
-    const TraceRay ray{
-        {numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}, numbers[6]};
+    TraceRay ray{{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}, numbers[6]};
     const float length = ray.direction.length();
     if (!std::isfinite(ray.origin.length()) || !std::isfinite(length) || !(length > 0) || !(ray.t_max > 0))
         throw InputError(
