@@ -3,7 +3,7 @@
 // holds ray by ray holds for pictures: longer reach, darker falloffs, scaled scenes.
 #include <gtest/gtest.h>
 
-#include "support/analytic_obscurance.h"
+#include "support/falloffs.h"
 #include "support/render.h"
 #include "support/scene_builder.h"
 #include "support/sphere_facet.h"

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "support/analytic_obscurance.h"
 #include "support/errors.h"
+#include "support/falloffs.h"
 #include "support/render.h"
 #include "support/scene_builder.h"
 #include "support/sphere_facet.h"
@@ -97,7 +97,7 @@ TEST_F(Furnace, LightEqualsItsClosedForm) {
             }
         }
     }
-    EXPECT_EQ(table.size(), 2u * 3 * 8 * 2 * 3 * 4);
+    EXPECT_EQ(table.size(), 2u * 3 * ALL_FALLOFFS.size() * 2 * 3 * 4);
     table.expect_no_failure();
     table.expect_one_percent_matters();
 }

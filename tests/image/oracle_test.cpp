@@ -9,7 +9,8 @@
 #include <numbers>
 #include <optional>
 
-#include "support/analytic_obscurance.h"
+#include "reference/oracles.h"
+#include "support/falloffs.h"
 #include "support/render.h"
 #include "support/scene_builder.h"
 #include "support/sphere_facet.h"
@@ -75,7 +76,7 @@ Geometry walls(int count) {
     for (int i = 0; i < count; ++i)
         list.push_back({i * std::numbers::pi / 2, 0.25});
     const auto w = [list](const Falloff& falloff) {
-        const double value = wall_obscurance(falloff, list);
+        const double value = floor_obscurance(falloff, list);
         return Bracket{value, value};
     };
     return {fmt::format("{} walls", count), builder.finish(), MAIN_FALLOFFS, w};

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "reference/oracles.h"
 #include "scene/gltf.h"
-#include "support/analytic_obscurance.h"
+#include "support/falloffs.h"
 #include "support/render.h"
 #include "support/sphere_facet.h"
 #include "support/statistics.h"
@@ -79,7 +80,7 @@ TEST_F(Scenes, WallDarkensItsFloorByTheClosedForm) {
     const Scene scene = shipped("wall");
     ZTable table;
     for (const Falloff& falloff : {STEP, LINEAR}) {
-        EXPECT_NEAR(beside_wall(falloff.kind, 0.3), wall_obscurance(falloff, {{0, 0.3}}), 1e-6);
+        EXPECT_NEAR(beside_wall(falloff.kind, 0.3), floor_obscurance(falloff, {{0, 0.3}}), 1e-6);
         std::vector<double> near_wall, far_from_wall;
         for (const Pixel& pixel : obscurances(scene, falloff, 18)) {
             // Floor and wall shade each other alike: what counts is the distance from the other one.
