@@ -111,7 +111,8 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     check_aspect(settings, select_camera(job.scene, settings).aspect_ratio);
 
     // The builder works on one core, the compiler on another.
-    std::future<Bvh> building = std::async(std::launch::async, [&] { return build_bvh(job.scene); });
+    std::future<Bvh> building =
+        std::async(std::launch::async, [&] { return build_bvh(job.scene, job.bvh_quality); });
     const Stopwatch compile_watch;
     const StageKernels kernels = prepare_kernels(library, result.needs, job);
     result.seconds.compile = compile_watch.seconds();

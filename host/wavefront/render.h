@@ -2,6 +2,7 @@
 // A whole render: scene and settings in, picture and figures out. The command line and the tests both come in here.
 #pragma once
 
+#include "bvh/bvh.h"
 #include "device/program.h"
 #include "film/image.h"
 #include "scene/needs.h"
@@ -27,7 +28,8 @@ struct RenderJob {
     std::vector<std::string> layers;  // beside beauty: names of film/develop.h
     uint64_t queue_bytes = DEFAULT_QUEUE_BYTES;
     uint64_t wave_size = DEFAULT_WAVE_SIZE;
-    bool portable = false;        // kernels without instructions of one processor
+    bool portable = false;  // kernels without instructions of one processor
+    BvhQuality bvh_quality = BvhQuality::high;
     DepthObserver observer = {};  // optional
 };
 

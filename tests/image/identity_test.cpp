@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // What changes only speed or memory changes no bit of a picture, in any layer: wave size, local size, memory, pruning
-// by needs, instructions of one processor, crops merged into one.
+// by needs, instructions of one processor, the tree over the triangles, crops merged into one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <random>
 
-#include "film/develop.h"
+#include "scene/material.h"
 #include "support/busy_room.h"
 #include "support/render.h"
+#include "support/same_bits.h"
 
 namespace obscura::test {
 namespace {
@@ -17,13 +18,6 @@ namespace {
 using Identity = DeviceTest;
 
 constexpr uint32_t WIDTH = 96, HEIGHT = 72;
-
-std::vector<std::string> every_layer() {
-    std::vector<std::string> names;
-    for (const LayerInfo& info : layer_table())
-        names.emplace_back(info.name);
-    return names;
-}
 
 RenderSettings room_settings() {
     RenderSettings settings = picture(WIDTH, HEIGHT, 4, 3);
@@ -41,22 +35,6 @@ Image render_room(const RenderSettings& settings, const RenderCut& cut = {}) {
 const Image& reference() {
     static const Image image = render_room(room_settings());
     return image;
-}
-
-// Every channel of every layer has the same bits: -0 differs from 0.
-void expect_same_bits(const Image& image, const Image& expected) {
-    ASSERT_EQ(image.layers.size(), expected.layers.size());
-    for (size_t i = 0; i < image.layers.size(); ++i) {
-        const Layer& layer = image.layers[i];
-        ASSERT_EQ(layer.name, expected.layers[i].name);
-        ASSERT_EQ(layer.pixels.size(), expected.layers[i].pixels.size());
-        size_t different = 0;
-        for (size_t p = 0; p < layer.pixels.size(); ++p) {
-            different += std::bit_cast<uint32_t>(layer.pixels[p]) !=
-                         std::bit_cast<uint32_t>(expected.layers[i].pixels[p]);
-        }
-        EXPECT_EQ(different, 0u) << "values of layer " << layer.title();
-    }
 }
 
 TEST_F(Identity, PictureShowsEveryLayer) {
@@ -101,6 +79,30 @@ TEST_F(Identity, SamePictureForEveryMemoryLimit) {
 
 TEST_F(Identity, SamePictureWithPortableKernels) {
     expect_same_bits(render_room(room_settings(), {.portable = true}), reference());
+}
+
+TEST_F(Identity, SamePictureForEveryQualityOfTheTree) {
+    for (const BvhQuality quality : {BvhQuality::low, BvhQuality::medium})
+        expect_same_bits(render_room(room_settings(), {.bvh_quality = quality}), reference());
+}
+
+// Lights keep their order, which the choice among them depends on.
+Scene shuffled(const Scene& scene, uint32_t seed) {
+    std::vector<size_t> places;
+    for (size_t i = 0; i < scene.triangles.size(); ++i)
+        if (!is_emissive(scene.materials[scene.triangles[i].material])) places.push_back(i);
+    std::vector<size_t> order = places;
+    std::shuffle(order.begin(), order.end(), std::mt19937(seed));
+    Scene result = scene;
+    for (size_t i = 0; i < places.size(); ++i)
+        result.triangles[places[i]] = scene.triangles[order[i]];
+    return result;
+}
+
+TEST_F(Identity, SamePictureForEveryOrderOfTriangles) {
+    for (const uint32_t seed : {1u, 2u, 3u})
+        expect_same_bits(render(shuffled(busy_room(), seed), room_settings(), every_layer()).image,
+                         reference());
 }
 
 TEST_F(Identity, SamePictureMergedFromCrops) {

@@ -28,11 +28,13 @@ struct RenderCut {
     uint64_t queue_bytes = DEFAULT_QUEUE_BYTES;
     uint32_t local_size = 64;
     bool portable = false;
+    BvhQuality bvh_quality = BvhQuality::high;
 };
 
 inline RenderResult render(const Scene& scene, const RenderSettings& settings,
                            std::vector<std::string> layers = {}, const RenderCut& cut = {}) {
-    const RenderJob job{scene, settings, std::move(layers), cut.queue_bytes, cut.wave_size, cut.portable};
+    const RenderJob job{scene,         settings,     std::move(layers), cut.queue_bytes,
+                        cut.wave_size, cut.portable, cut.bvh_quality};
     return render_scene(shared_device(), shared_library(cut.local_size), job,
                         [](double, const RayCounts&) { return true; });
 }
