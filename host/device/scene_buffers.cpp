@@ -133,13 +133,23 @@ uint32_t light_code(LightType type) {
     return LIGHT_POINT;
 }
 
-// Alias table over the punctual lights. Point and spot lights are weighed by intensity at one metre,
-// directional ones by their irradiance: the same unit at that distance.
+// Irradiance in the middle of the scene, by which punctual lights are picked: what they do in the rest of it is as
+// likely more as less. Lamps count as no nearer than a quarter of the diagonal. No length here is absolute, such as a
+// metre: it would leave one kind of light without samples in a scene that is very large or small.
+double selection_weight(const Scene& scene, const PunctualLight& light) {
+    const double intensity = mean_channel(V3d(light.intensity));
+    if (light.type == LightType::directional || scene.bounds.isEmpty()) return intensity;
+    const V3d low(scene.bounds.min), high(scene.bounds.max);
+    const double distance2 = (V3d(light.position) - 0.5 * (low + high)).length2();
+    return intensity / std::max(distance2, (high - low).length2() / 16);
+}
+
+// Alias table over the punctual lights.
 std::vector<PointLight> make_point_lights(const Scene& scene) {
     std::vector<double> weights;
     std::vector<const PunctualLight*> sources;
     for (const PunctualLight& light : scene.lights) {
-        const double weight = mean_channel(V3d(light.intensity));
+        const double weight = selection_weight(scene, light);
         if (!(weight > 0)) continue;
         weights.push_back(weight);
         sources.push_back(&light);
