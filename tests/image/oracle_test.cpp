@@ -1,134 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// The obscurance W of rendered pictures against closed forms, by z-tests over 16 independent seeds of 65536 rays
-// each.
-#include <fmt/format.h>
+// The obscurance W of rendered points against closed forms: every geometry with every falloff and several d_max, by
+// z-tests over 16 independent randomisations of 65536 rays each. The table of Owen's points is also written to the build
+// tree, for tools/report.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <functional>
-#include <numbers>
+#include <algorithm>
 #include <optional>
+#include <set>
 
-#include "reference/oracles.h"
-#include "support/falloffs.h"
-#include "support/render.h"
-#include "support/scene_builder.h"
-#include "support/sphere_facet.h"
-#include "support/statistics.h"
+#include "support/oracle_table.h"
 
 namespace obscura::test {
 namespace {
 
 using Oracle = DeviceTest;
 
-constexpr uint64_t SEEDS = 16;
-constexpr uint32_t SPP = 64;
-constexpr uint32_t RAYS = SPP * 1024;  // of each seed
-constexpr double ROUNDING = 2.5e-7;    // of W: two units in its last place
-// So narrow that all camera rays meet the same point.
-constexpr double POINT_FOV = 1e-6;
-const Rgb COLOR(0.8f, 0.5f, 0.2f);  // of every surface near the point
-
-// A point whose W is known for d_max = 1 m.
-struct Geometry {
-    std::string name;
-    Scene scene;
-    std::vector<Falloff> falloffs;
-    std::function<Bracket(const Falloff&)> obscurance;
-};
-
-// A black surface out of reach, so that R_ave differs from the colour that the rays meet.
-void add_far_black(SceneBuilder& builder) {
-    builder.quad({60, 0, 60}, {8, 0, 0}, {0, 0, 8}, builder.material(matte(Rgb(0))));
-}
-
-// Occluders are just large enough to be infinite for d_max, and the floor is small: rays start above it by a distance
-// in proportion to its size, and W would show that.
-void add_floor(SceneBuilder& builder, uint32_t material) {
-    builder.quad({-0.05f, 0, 0.05f}, {0.1f, 0, 0}, {0, 0, -0.1f}, material);
-}
-
-Geometry plane_at(float height) {
-    SceneBuilder builder;
-    const uint32_t material = builder.material(matte(COLOR));
-    add_floor(builder, material);
-    builder.quad({-1.2f, height, -1.2f}, {2.4f, 0, 0}, {0, 0, 2.4f}, material);
-    add_far_black(builder);
-    builder.camera(V3d(0, static_cast<double>(height) / 2, 0), V3d(0, 0, 0), POINT_FOV);
-    const auto w = [height](const Falloff& falloff) {
-        const double value = plane_obscurance(falloff, static_cast<double>(height));
-        return Bracket{value, value};
-    };
-    return {fmt::format("plane {}", height), builder.finish(), ALL_FALLOFFS, w};
-}
-
-// Walls at 0.25 m on the sides +x, +z and -x of the point, the first `count` of them.
-Geometry walls(int count) {
-    SceneBuilder builder;
-    const uint32_t material = builder.material(matte(COLOR));
-    add_floor(builder, material);
-    builder.quad({0.25f, -0.2f, -1.2f}, {0, 0, 2.4f}, {0, 1.4f, 0}, material);
-    if (count > 1) builder.quad({-1.2f, -0.2f, 0.25f}, {2.4f, 0, 0}, {0, 1.4f, 0}, material);
-    if (count > 2) builder.quad({-0.25f, -0.2f, -1.2f}, {0, 0, 2.4f}, {0, 1.4f, 0}, material);
-    add_far_black(builder);
-    builder.camera(V3d(0, 1, 0), V3d(0, 0, 0), POINT_FOV);
-    std::vector<Wall> list;
-    for (int i = 0; i < count; ++i)
-        list.push_back({i * std::numbers::pi / 2, 0.25});
-    const auto w = [list](const Falloff& falloff) {
-        const double value = floor_obscurance(falloff, list);
-        return Bracket{value, value};
-    };
-    return {fmt::format("{} walls", count), builder.finish(), MAIN_FALLOFFS, w};
-}
-
-// The inside of a sphere of diameter 1 m.
-Geometry sphere_surface() {
-    SceneBuilder builder;
-    builder.sphere({0, 0, 0}, 0.5f, 5, builder.material(matte(COLOR)), true);
-    add_far_black(builder);
-    const Scene mesh = SceneBuilder(builder).finish();
-    const SphereFacet facet = find_facet(mesh, V3d(0.3, -0.5, -0.8));
-    builder.camera(V3d(0, 0, 0), facet.foot, POINT_FOV);
-    const auto w = [facet](const Falloff& falloff) { return facet_obscurance(facet, falloff, 1); };
-    return {"sphere", builder.finish(), MAIN_FALLOFFS, w};
-}
-
-const std::vector<Geometry>& geometries() {
-    static const std::vector<Geometry> list{plane_at(0.1f), plane_at(0.25f), plane_at(0.5f),
-                                            walls(1),       walls(3),        sphere_surface()};
-    return list;
-}
-
-RenderSettings one_point(SamplerKind sampler, bool bleeding, const Falloff& falloff, uint32_t rays = RAYS) {
-    RenderSettings settings = picture(1, 1, SPP, rays / SPP);
-    settings.sampler = sampler;
-    settings.bleeding = bleeding;
-    settings.falloff = falloff;
-    settings.ambient_light = Rgb(1);
-    settings.direct = false;
-    return settings;
-}
-
-// Estimates of the seeds first_seed, first_seed + 1 ...: colourless W, and W per channel.
-struct Estimates {
-    std::vector<double> colourless;
-    std::array<std::vector<double>, 3> colour;
-    RgbD average_reflectivity;
-};
-
-Estimates estimate_point(const Scene& scene, RenderSettings settings, uint64_t first_seed) {
-    Estimates estimates;
-    for (uint64_t seed = 0; seed < SEEDS; ++seed) {
-        settings.seed = first_seed + seed;
-        const RenderResult result = render(scene, settings, {"ao", "obscurance"});
-        estimates.colourless.push_back(channel(result.image, "ao", 0).at(0));
-        for (size_t c = 0; c < 3; ++c)
-            estimates.colour[c].push_back(channel(result.image, "obscurance", c).at(0));
-        estimates.average_reflectivity = result.radiometry.average_reflectivity;
-    }
-    return estimates;
-}
+const std::vector<double> UNIT_REACH{1};
 
 // The falloff whose W is the mean of rho^2; nullopt where it has no closed form here.
 std::optional<Falloff> squared(const Falloff& falloff) {
@@ -147,77 +34,92 @@ std::optional<Falloff> squared(const Falloff& falloff) {
 }
 
 // Mean of (estimate - W)^2 over its exact variance for independent rays.
-struct VarianceRatio {
-    double sum = 0;
-    double count = 0;
-
-    void add(const std::vector<double>& values, double w, double second_moment) {
-        const double variance = (second_moment - w * w) / RAYS;
-        for (const double value : values)
-            sum += (value - w) * (value - w) / variance;
-        count += static_cast<double>(values.size());
+void expect_variance_of_independent_rays(const OracleTable& table) {
+    double sum = 0, count = 0;
+    for (const OracleTable::Row& row : table.rows) {
+        const auto square = squared(row.falloff);
+        if (!square) continue;
+        const Bracket w = row.geometry->obscurance(row.falloff, row.d_max);
+        const Bracket second_moment = row.geometry->obscurance(*square, row.d_max);
+        const double variance = (second_moment.low - w.low * w.low) / ORACLE_RAYS;
+        // Tessellated geometry has no exact variance; closed or open geometry has none at all.
+        if (w.low < w.high || variance < 1e-15) continue;
+        for (const double value : row.values)
+            sum += (value - w.low) * (value - w.low) / variance;
+        count += static_cast<double>(row.values.size());
     }
-};
-
-struct Tables {
-    ZTable z;
-    VarianceRatio variance;
-};
-
-// Every geometry with every falloff of its list. With bleeding the rays' colours must follow W = R_Q (W_rho - W_AO)
-// + R_ave W_AO too, which holds for occluders of one colour.
-Tables compare_all(SamplerKind sampler, bool bleeding) {
-    Tables tables;
-    uint64_t first_seed = 1000 * static_cast<uint64_t>(sampler);
-    for (const Geometry& geometry : geometries()) {
-        const Bracket closed = geometry.obscurance(STEP);
-        for (const Falloff& falloff : geometry.falloffs) {
-            const Estimates found =
-                estimate_point(geometry.scene, one_point(sampler, bleeding, falloff), first_seed);
-            first_seed += SEEDS;
-            const Bracket w = geometry.obscurance(falloff);
-            const std::string name = geometry.name + ", " + falloff_text(falloff);
-            tables.z.add(name, found.colourless, w.low, w.high, ROUNDING);
-            // A sphere within reach leaves nothing open to the step: no variance.
-            if (const auto square = squared(falloff); square && w.low == w.high && w.low > 0) {
-                tables.variance.add(found.colourless, w.low, geometry.obscurance(*square).low);
-            }
-            for (int c = 0; c < 3; ++c) {
-                const double hit = bleeding ? static_cast<double>(COLOR[c]) : 1;
-                const double drop = hit - (bleeding ? found.average_reflectivity[c] : 1);
-                tables.z.add(fmt::format("{}, channel {}", name, c), found.colour[static_cast<size_t>(c)],
-                             hit * w.low - drop * closed.high, hit * w.high - drop * closed.low, ROUNDING);
-            }
-        }
-    }
-    return tables;
+    ASSERT_GE(count, 200);
+    EXPECT_NEAR(sum / count, 1, 3.5 * std::sqrt(2 / count)) << "3.5 standard errors of the mean of chi^2";
 }
 
-TEST_F(Oracle, RandomRaysWithBleedingGiveClosedForms) {
-    const Tables tables = compare_all(SamplerKind::random, true);
-    tables.z.expect_no_failure();
-    // Independent rays have exactly the variance that they should: 3.5 standard errors of the mean of chi^2.
-    ASSERT_GE(tables.variance.count, 200);
-    EXPECT_NEAR(tables.variance.sum / tables.variance.count, 1, 3.5 * std::sqrt(2 / tables.variance.count));
+// Every value multiplied by 1.01: each row must notice, unless W is 0.
+void expect_planted_percent_found(const OracleTable& table) {
+    for (size_t i = 0; i < table.rows.size(); ++i) {
+        const Comparison& row = table.colourless.rows()[i];
+        if (row.high < row.rounding) continue;
+        std::vector<double> values = table.rows[i].values;
+        for (double& value : values)
+            value *= 1.01;
+        const Comparison planted{row.name, estimate(values), row.low, row.high, row.rounding};
+        EXPECT_GT(planted.z(), table.colourless.limit()) << row.name;
+    }
+}
+
+// Where nothing or everything is open there is nothing to round.
+void expect_extremes_exact(const OracleTable& table) {
+    size_t open = 0, closed = 0;
+    for (size_t i = 0; i < table.rows.size(); ++i) {
+        const Comparison& row = table.colourless.rows()[i];
+        if (row.high > 1e-12 && row.low < 1 - 1e-12) continue;
+        const double extreme = std::round(row.low);
+        (extreme == 1 ? open : closed) += 1;
+        EXPECT_EQ(table.rows[i].values, std::vector<double>(16, extreme)) << row.name;
+    }
+    EXPECT_GE(open, 36u) << "empty space at three d_max, the cube of two d_max";
+    EXPECT_GE(closed, 5u) << "the step falloff in cube, sphere and dome";
+}
+
+void expect_closed_forms(const OracleTable& table) {
+    for (const ZTable* comparisons : {&table.colourless, &table.colour}) {
+        comparisons->expect_no_failure();
+        comparisons->expect_one_percent_matters();
+    }
 }
 
 TEST_F(Oracle, OwenRaysWithBleedingGiveClosedForms) {
-    const Tables tables = compare_all(SamplerKind::owen, true);
-    tables.z.expect_no_failure();
-    tables.z.expect_one_percent_matters();
+    const OracleTable table = measure_oracles(SamplerKind::owen, true, ALL_FALLOFFS, ORACLE_REACHES);
+    write_oracles(table, OBSCURA_BINARY_DIR "/reports/oracles.json");
+    EXPECT_EQ(table.rows.size(), oracle_geometries().size() * ALL_FALLOFFS.size() * ORACLE_REACHES.size());
+    expect_closed_forms(table);
+    table.colourless.expect_student_spread();
+    expect_extremes_exact(table);
+    expect_planted_percent_found(table);
+}
+
+TEST_F(Oracle, RandomRaysWithBleedingGiveClosedForms) {
+    const OracleTable table = measure_oracles(SamplerKind::random, true, MAIN_FALLOFFS, UNIT_REACH);
+    table.colourless.expect_no_failure();
+    table.colour.expect_no_failure();
+    expect_variance_of_independent_rays(table);
 }
 
 TEST_F(Oracle, LatticeRaysWithoutBleedingGiveClosedForms) {
-    const Tables tables = compare_all(SamplerKind::lattice, false);
-    tables.z.expect_no_failure();
-    tables.z.expect_one_percent_matters();
+    expect_closed_forms(measure_oracles(SamplerKind::lattice, false, MAIN_FALLOFFS, UNIT_REACH));
+}
+
+TEST_F(Oracle, FalloffsOfTheTableAreOfEveryKind) {
+    std::set<FalloffKind> kinds;
+    for (const Falloff& falloff : ALL_FALLOFFS)
+        kinds.insert(falloff.kind);
+    EXPECT_EQ(kinds.size(), static_cast<size_t>(FalloffKind::pow) + 1);
 }
 
 TEST_F(Oracle, ColourlessObscuranceIsTheSameWithBleeding) {
-    for (const Geometry& geometry : geometries()) {
-        for (const Falloff& falloff : geometry.falloffs) {
+    for (const OracleGeometry& geometry : oracle_geometries()) {
+        for (const Falloff& falloff : MAIN_FALLOFFS) {
             const auto ao = [&](bool bleeding) {
-                const RenderSettings settings = one_point(SamplerKind::owen, bleeding, falloff, 1024);
+                RenderSettings settings = oracle_settings(SamplerKind::owen, falloff, 1, 1024);
+                settings.bleeding = bleeding;
                 return channel(render(geometry.scene, settings, {"ao"}).image, "ao", 0);
             };
             EXPECT_EQ(ao(true), ao(false)) << geometry.name << ", " << falloff_text(falloff);
@@ -226,14 +128,14 @@ TEST_F(Oracle, ColourlessObscuranceIsTheSameWithBleeding) {
 }
 
 TEST_F(Oracle, OnePercentMoreReachIsDetected) {
-    for (const SamplerKind sampler : {SamplerKind::random, SamplerKind::owen}) {
-        for (const Geometry& geometry : geometries()) {
-            RenderSettings settings = one_point(sampler, true, SQRT);
-            settings.d_max.value = 1.01;
+    for (const OracleGeometry& geometry : oracle_geometries()) {
+        const Bracket w = geometry.obscurance(SQRT, 1);
+        if (w.low == 1) continue;  // nothing within reach
+        for (const SamplerKind sampler : {SamplerKind::random, SamplerKind::owen}) {
+            const RenderSettings settings = oracle_settings(sampler, SQRT, 1.01);
             ZTable table;
-            const Bracket w = geometry.obscurance(SQRT);
-            table.add("sqrt", estimate_point(geometry.scene, settings, 77).colourless, w.low, w.high,
-                      ROUNDING);
+            table.add("sqrt", channel(render(geometry.scene, settings, {"ao"}).image, "ao", 0), w.low, w.high,
+                      W_ROUNDING);
             EXPECT_FALSE(table.failures().empty())
                 << geometry.name << ", sampler " << static_cast<int>(sampler);
         }

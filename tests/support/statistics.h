@@ -56,20 +56,35 @@ inline double sidak_limit(size_t comparisons, int degrees_of_freedom) {
     return high;
 }
 
+// An estimate of a number that lies in [low, high]; rounding: what float arithmetic may add to it.
+struct Comparison {
+    std::string name;
+    Estimate found;
+    double low = 0, high = 0;
+    double rounding = 0;
+
+    // Distance from [low, high], negative below.
+    double error() const { return found.mean - std::clamp(found.mean, low, high); }
+
+    // The error beyond rounding in standard errors; infinite where there is no variance to explain it.
+    double z() const {
+        const double beyond = std::abs(error()) - rounding;
+        if (beyond <= 0) return 0;
+        return std::copysign(found.standard_error > 0 ? beyond / found.standard_error
+                                                      : std::numeric_limits<double>::infinity(),
+                             error());
+    }
+};
+
 // Comparisons that are judged together.
 class ZTable {
   public:
-    // values: independent estimates of one number that lies in [low, high]; rounding: what float arithmetic may add
-    // to each of them.
+    // values: independent estimates of one number in [low, high], each of which float arithmetic may change by
+    // `rounding`.
     void add(const std::string& name, const std::vector<double>& values, double low, double high,
              double rounding) {
-        const Estimate found = estimate(values);
         degrees_of_freedom_ = static_cast<int>(values.size()) - 1;
-        const double outside = std::max({low - found.mean, found.mean - high, 0.0}) - rounding;
-        const double z = outside <= 0               ? 0
-                         : found.standard_error > 0 ? outside / found.standard_error
-                                                    : std::numeric_limits<double>::infinity();
-        rows_.push_back({name, found, low, high, z});
+        rows_.push_back({name, estimate(values), low, high, rounding});
     }
 
     double limit() const { return sidak_limit(rows_.size(), degrees_of_freedom_); }
@@ -78,12 +93,12 @@ class ZTable {
     std::vector<std::string> failures() const {
         std::vector<std::string> lines;
         const double most = limit();
-        for (const Row& row : rows_) {
-            if (row.z <= most) continue;
+        for (const Comparison& row : rows_) {
+            if (std::abs(row.z()) <= most) continue;
             lines.push_back(row.name + ": " + std::to_string(row.found.mean) + " +- " +
                             std::to_string(row.found.standard_error) + ", expected " +
-                            std::to_string(row.low) + " .. " + std::to_string(row.high) + ", |z| " +
-                            std::to_string(row.z) + " > " + std::to_string(most));
+                            std::to_string(row.low) + " .. " + std::to_string(row.high) + ", z " +
+                            std::to_string(row.z()) + " beyond " + std::to_string(most));
         }
         return lines;
     }
@@ -97,20 +112,37 @@ class ZTable {
     // Every comparison would notice if its number were off by one per cent. Zero has no per cent.
     void expect_one_percent_matters() const {
         const double most = limit();
-        for (const Row& row : rows_) {
+        for (const Comparison& row : rows_) {
             EXPECT_LE(row.high - row.low + most * row.found.standard_error, 0.01 * row.high) << row.name;
         }
     }
 
+    // Standard errors are neither too large, which would hide what is wrong, nor too small: z varies as Student's t
+    // does. For comparisons independent of each other; those that a bracket or rounding may decide don't count.
+    void expect_student_spread() const {
+        double sum = 0;
+        size_t count = 0;
+        for (const Comparison& row : rows_) {
+            if (row.low < row.high || row.found.standard_error < row.rounding) continue;
+            const double z = row.error() / row.found.standard_error;
+            sum += z * z;
+            ++count;
+        }
+        // Moments of t^2.
+        const double dof = degrees_of_freedom_;
+        const double variance = dof / (dof - 2);
+        const double fourth = 3 * dof * dof / ((dof - 2) * (dof - 4));
+        const auto n = static_cast<double>(count);
+        ASSERT_GE(count, 100u);
+        EXPECT_NEAR(sum / n, variance, 3.5 * std::sqrt((fourth - variance * variance) / n));
+    }
+
+    const std::vector<Comparison>& rows() const { return rows_; }
     size_t size() const { return rows_.size(); }
+    int degrees_of_freedom() const { return degrees_of_freedom_; }
 
   private:
-    struct Row {
-        std::string name;
-        Estimate found;
-        double low, high, z;
-    };
-    std::vector<Row> rows_;
+    std::vector<Comparison> rows_;
     int degrees_of_freedom_ = 1;
 };
 
