@@ -13,6 +13,7 @@ endfunction()
 
 obscura_script_test(unit include_order_test)
 obscura_script_test(unit readme_test)
+obscura_script_test(unit report_test)
 obscura_script_test(unit test_scenes)
 if(TARGET obscura)
   obscura_script_test(unit usage_test)
