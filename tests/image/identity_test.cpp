@@ -86,6 +86,25 @@ TEST_F(Identity, SamePictureForEveryQualityOfTheTree) {
         expect_same_bits(render_room(room_settings(), {.bvh_quality = quality}), reference());
 }
 
+// Sheets of many colours in one plane: every hit is a tie.
+TEST_F(Identity, SameSheetOfSeveralInOnePlaneForEveryQualityOfTheTree) {
+    SceneBuilder builder;
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> unit(0, 1);
+    for (int i = 0; i < 100; ++i) {
+        const Rgb color(unit(random), unit(random), unit(random));
+        builder.quad({2 * unit(random) - 2, 0, 2 - 2 * unit(random)}, {1 + unit(random), 0, 0},
+                     {0, 0, -1 - unit(random)}, builder.material(matte(color)));
+    }
+    builder.camera({0, 2, 0}, {0, 0, 0}, 1.2);
+    const Scene sheets = builder.finish();
+    RenderSettings settings = picture(WIDTH, HEIGHT, 4, 3);
+    settings.ambient_light = Rgb(1);
+    const Image expected = render(sheets, settings, every_layer()).image;
+    for (const BvhQuality quality : {BvhQuality::low, BvhQuality::medium})
+        expect_same_bits(render(sheets, settings, every_layer(), {.bvh_quality = quality}).image, expected);
+}
+
 // Lights keep their order, which the choice among them depends on.
 Scene shuffled(const Scene& scene, uint32_t seed) {
     std::vector<size_t> places;
