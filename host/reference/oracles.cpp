@@ -145,10 +145,7 @@ double plane_obscurance(const Falloff& falloff, double height) {
 }
 
 std::vector<Wall> square_well(double half_side) {
-    std::vector<Wall> walls;
-    for (int i = 0; i < 4; ++i)
-        walls.push_back({i * PI / 2, half_side});
-    return walls;
+    return {{0, half_side}, {0.5 * PI, half_side}, {PI, half_side}, {1.5 * PI, half_side}};
 }
 
 // At one azimuth: the wall at m takes s from s0 on, the ceiling at H the cosines from c0 on, where s0 / m = c0 / H

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Closed forms of the colourless obscurance W for simple geometry, for every falloff, in double. All lengths are in
-// units of d_max. A finite sum of analytic functions is exact to 1e-13; exp:lambda, whose terms cancel for small
-// lambda, to 1e-15 / lambda.
+// units of d_max. Exact to 1e-13, but for exp:lambda, whose terms cancel for small lambda: 1e-15 / lambda.
 #pragma once
 
 #include <limits>
