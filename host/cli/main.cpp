@@ -15,6 +15,7 @@
 #include "cli/devices.h"
 #include "cli/info.h"
 #include "cli/merge.h"
+#include "cli/reference.h"
 #include "cli/render.h"
 
 namespace obscura {
@@ -30,6 +31,7 @@ ExitCode run(int argc, char** argv) {
     add_devices_command(app, exit_code);
     add_info_command(app, exit_code);
     add_merge_command(app, exit_code);
+    add_reference_command(app, exit_code);
     add_render_command(app, exit_code);
     try {
         app.parse(argc, argv);

@@ -19,6 +19,7 @@ namespace obscura {
 namespace {
 
 constexpr uint32_t MAX_IMAGE_SIZE = 65536;  // pixels per side
+constexpr const char* WORK_GROUP = "Work";
 constexpr uint32_t MAX_SAMPLES = 1u << 24;  // per pixel and per point: float counts them exactly
 
 CLI::Option* add_switch(CLI::App& command, const std::string& name, bool& value, const std::string& help) {
@@ -148,50 +149,52 @@ void add_model_options(CLI::App& command, RenderOptions& o) {
         ->group(group);
 }
 
-void add_work_options(CLI::App& command, RenderOptions& o) {
+void add_sample_options(CLI::App& command, RenderOptions& o) {
     RenderSettings& s = o.settings;
-    const char* group = "Work";
     add_choice<SamplerKind>(
         command, "--sampler", s.sampler,
         {{"lattice", SamplerKind::lattice}, {"owen", SamplerKind::owen}, {"random", SamplerKind::random}},
         "Sample points")
         ->default_str("lattice")
-        ->group(group);
+        ->group(WORK_GROUP);
     command.add_option("--seed", s.seed, "Another seed, another noise")
         ->check(whole_number())
         ->capture_default_str()
-        ->group(group);
+        ->group(WORK_GROUP);
+    command.add_flag("--quiet", o.quiet, "Print only warnings and errors")->group(WORK_GROUP);
+}
+
+void add_device_options(CLI::App& command, RenderOptions& o) {
     command
         .add_option("--device", o.device,
                     "Index, platform:device, or part of the device's or platform's name or version (see "
                     "obscura devices)")
         ->check(not_empty())
         ->envname("OBSCURA_DEVICE")
-        ->group(group);
+        ->group(WORK_GROUP);
     command.add_option("--memory", o.memory, "Device memory for the queues: bytes, or with K, M, G")
         ->capture_default_str()
-        ->group(group);
+        ->group(WORK_GROUP);
     command
         .add_option("--wave-size", o.wave_size,
                     "Camera samples in flight at once; changes speed, not pictures")
         ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 31))
         ->capture_default_str()
-        ->group(group);
+        ->group(WORK_GROUP);
     command
         .add_option("--local-size", o.local_size, "Work items per work group; changes speed, not pictures")
         ->check(CLI::Range(1u, 4096u))
         ->capture_default_str()
-        ->group(group);
-    add_choice<NeedsMode>(command, "--needs", s.needs,
+        ->group(WORK_GROUP);
+    add_choice<NeedsMode>(command, "--needs", o.settings.needs,
                           {{"auto", NeedsMode::automatic}, {"all", NeedsMode::all}},
                           "Model only what the scene needs, or everything")
         ->default_str("auto")
-        ->group(group);
+        ->group(WORK_GROUP);
     command
         .add_flag("--portable-kernels", o.portable,
                   "Use no instruction of one processor; the same pictures, slower")
-        ->group(group);
-    command.add_flag("--quiet", o.quiet, "Print only warnings and errors")->group(group);
+        ->group(WORK_GROUP);
 }
 
 // A pixel's points of one kind are numbered through: spp times those of each camera ray.
@@ -204,7 +207,7 @@ void check_set_size(uint32_t spp, const char* option, uint32_t count) {
 
 }  // namespace
 
-std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
+std::shared_ptr<RenderOptions> add_host_options(CLI::App& command) {
     auto options = std::make_shared<RenderOptions>();
     command
         .add_option("scene", options->scene,
@@ -213,7 +216,13 @@ std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
         ->type_name("SCENE");
     add_image_options(command, *options);
     add_model_options(command, *options);
-    add_work_options(command, *options);
+    add_sample_options(command, *options);
+    return options;
+}
+
+std::shared_ptr<RenderOptions> add_render_options(CLI::App& command) {
+    auto options = add_host_options(command);
+    add_device_options(command, *options);
     return options;
 }
 

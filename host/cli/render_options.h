@@ -28,7 +28,9 @@ struct RenderOptions {
     bool quiet = false;
 };
 
-// Registers the positional SCENE and the shared options on a subcommand.
+// Registers the positional SCENE and the shared options on a subcommand, but for those of an OpenCL device.
+std::shared_ptr<RenderOptions> add_host_options(CLI::App& command);
+// All of them.
 std::shared_ptr<RenderOptions> add_render_options(CLI::App& command);
 
 // Converts what CLI11 left as text, falloff and d_max, and checks what only several options together tell. Throws

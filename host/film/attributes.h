@@ -38,6 +38,13 @@ inline constexpr const char* SPECULAR = "specular";
 inline constexpr const char* ROULETTE = "roulette";
 inline constexpr const char* COMPLETE = "complete";  // "yes", "no": stopped early
 
+// Of a reference picture.
+inline constexpr const char* INTEGRATOR = "integrator";  // "obscurance", "path"
+inline constexpr const char* SET_SPP = "samplesPerSet";  // int64: of each independent set
+inline constexpr const char* SETS = "independentSets";   // int64: finished, the ones behind its variance
+inline constexpr const char* SCENE_DIGEST =
+    "sceneDigest";  // string: of triangles, materials, lights, textures
+
 // How it was made.
 inline constexpr const char* DEVICE = "device";              // string
 inline constexpr const char* SECONDS = "renderTimeSeconds";  // double

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "sampling/lattice.h"
 #include "sampling/sample_order.h"
+#include "sampling/seed.h"
 
 #include <algorithm>
 #include <bit>
@@ -45,13 +46,6 @@ uint32_t frame_flags(const RenderSettings& settings) {
            (settings.specular ? FRAME_SPECULAR : 0u) | (ambient ? FRAME_AMBIENT : 0u) |
            (traced ? FRAME_OBSCURANCE : 0u) | (traced && settings.bleeding ? FRAME_BLEEDING : 0u) |
            (settings.filter != PixelFilter::box ? FRAME_TABLE_FILTER : 0u);
-}
-
-// 64 bits of seed for a kernel that mixes in 32: the high half is folded in so that it counts.
-uint32_t fold_seed(uint64_t seed) {
-    const uint64_t mixed = (seed ^ seed >> 32) * 0x9e3779b97f4a7c15u;
-    return seed <= std::numeric_limits<uint32_t>::max() ? static_cast<uint32_t>(seed)
-                                                        : static_cast<uint32_t>(mixed >> 32);
 }
 
 // The kernels compare with the host's numbers.

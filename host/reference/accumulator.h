@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the samples of a reference picture add up to: sums, and the variance between independent sets of samples. A
+// picture carries its accumulator along as two layers of floats, so that a later run goes on exactly where it ended.
+#pragma once
+
+#include "film/image.h"
+#include "reference/integrator.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace obscura::reference {
+
+class Accumulator {
+  public:
+    // passes_per_set: samples of a pixel in a set.
+    Accumulator(size_t pixel_count, uint32_t passes_per_set);
+
+    // One more sample of every pixel.
+    void add_pass(std::span<const PathLight> pixels);
+
+    uint64_t passes() const { return passes_; }
+    uint64_t finished_sets() const { return passes_ / passes_per_set_; }
+
+    // Appends beauty, with parts the layers it consists of, the variance of beauty's mean once two sets are finished,
+    // and the state.
+    void develop(Image& image, bool parts) const;
+    // Takes the state of a picture of `passes` passes; false if it holds none.
+    bool restore(const Image& image, uint64_t passes);
+
+  private:
+    void close_set(double* pixel) const;
+
+    uint32_t passes_per_set_;
+    uint64_t passes_ = 0;
+    std::vector<double> values_;  // of each pixel VALUE_COUNT numbers
+};
+
+}  // namespace obscura::reference

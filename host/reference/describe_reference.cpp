@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reference/describe_reference.h"
+
+#include "base/error.h"
+#include "device/scene_buffers.h"
+#include "film/attributes.h"
+#include "reference/precise_tracer.h"
+#include "wavefront/describe.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string>
+
+namespace obscura::reference {
+namespace {
+
+// Facts of obscurances that a path tracer ignores.
+constexpr std::array NOT_OF_PATHS = {
+    attribute::AMBIENT_INTENSITY, attribute::OBSCURANCE_RAYS, attribute::MAX_DEPTH,
+    attribute::FALLOFF,           attribute::MAX_DISTANCE,    attribute::AMBIENT,
+    attribute::BLEEDING,          attribute::OBSCURANCE,      attribute::DIRECT,
+    attribute::SPECULAR,          attribute::ROULETTE};
+
+// How far a picture is, which changes when it is continued.
+constexpr std::array PROGRESS = {attribute::SPP, attribute::PLANNED_SPP, attribute::SETS, attribute::COMPLETE,
+                                 attribute::SECONDS};
+
+// FNV-1a (Fowler, Noll, Vo), 64 bits.
+template <typename T>
+void add_bytes(uint64_t& hash, const std::vector<T>& values) {
+    for (const std::byte byte : std::as_bytes(std::span(values))) {
+        hash ^= std::to_integer<uint64_t>(byte);
+        hash *= 0x100000001b3u;
+    }
+}
+
+// Of all that shading and tracing read, in the layout that has no padding.
+std::string scene_digest(const Scene& scene, PixelFilter filter) {
+    const SceneArrays arrays = make_scene_arrays(scene, filter);
+    uint64_t hash = 0xcbf29ce484222325u;
+    add_bytes(hash, arrays.triangles);
+    add_bytes(hash, arrays.materials);
+    add_bytes(hash, arrays.area_lights);
+    add_bytes(hash, arrays.point_lights);
+    add_bytes(hash, arrays.texels);
+    return fmt::format("fnv1a-{:016x}", hash);
+}
+
+// As a file gives it back: matrices are single precision there.
+Attribute stored(const Attribute& value) {
+    const M44d* const matrix = std::get_if<M44d>(&value);
+    return matrix == nullptr ? value : Attribute(M44d(Imath::M44f(*matrix)));
+}
+
+}  // namespace
+
+ReferenceFacts find_facts(const ReferenceJob& job, const RenderSettings& settings) {
+    ReferenceFacts facts{compute_radiometry(job.scene), 0};
+    if (job.integrator == IntegratorKind::path) return facts;
+    facts.d_max = resolve_max_distance(settings.d_max, job.scene.bounds);
+    check_ambient(job.scene, facts.radiometry, settings);
+    return facts;
+}
+
+void describe_reference(const ReferenceJob& job, const RenderSettings& settings, const ReferenceFacts& facts,
+                        Image& image) {
+    RenderResult described;
+    described.settings = settings;
+    described.radiometry = facts.radiometry;
+    described.d_max = facts.d_max;
+    describe({job.scene, settings, {}}, tracer_name() + ", double precision", described);
+    image.attributes = std::move(described.image.attributes);
+    const bool path = job.integrator == IntegratorKind::path;
+    for (const char* name : NOT_OF_PATHS)
+        if (path) image.attributes.erase(name);
+    image.attributes[attribute::INTEGRATOR] = std::string(path ? "path" : "obscurance");
+    image.attributes[attribute::SET_SPP] = int64_t{settings.spp};
+    image.attributes[attribute::SCENE_DIGEST] = scene_digest(job.scene, settings.filter);
+    image.attributes[attribute::PLANNED_SPP] = int64_t{settings.spp} * job.sets;
+}
+
+void describe_progress(uint64_t passes, uint64_t finished_sets, ReferenceResult& result,
+                       const Image* previous) {
+    auto& attributes = result.image.attributes;
+    attributes[attribute::SPP] = static_cast<int64_t>(passes);
+    attributes[attribute::SETS] = static_cast<int64_t>(finished_sets);
+    attributes[attribute::COMPLETE] = std::string(result.complete ? "yes" : "no");
+    double seconds = result.seconds;
+    if (previous != nullptr) seconds += std::get<double>(previous->attributes.at(attribute::SECONDS));
+    attributes[attribute::SECONDS] = seconds;
+}
+
+uint64_t passes_to_continue(const Image& previous, const Image& image) {
+    const auto window = [](const Image& i) {
+        return fmt::format("{} x {}, columns {} to {}, rows {} to {}", i.full_width, i.full_height, i.x0,
+                           i.x1, i.y0, i.y1);
+    };
+    if (window(previous) != window(image))
+        throw InputError("--resume: the picture has the pixels {}, not {}", window(previous), window(image));
+    for (const auto& [name, value] : image.attributes) {
+        if (std::ranges::find(PROGRESS, name) != PROGRESS.end()) continue;
+        const auto found = previous.attributes.find(name);
+        if (found == previous.attributes.end()) {
+            throw InputError("--resume: the picture's header has no {}, so it is none of this command's",
+                             name);
+        }
+        if (stored(found->second) == stored(value)) continue;
+        throw InputError("--resume: the picture's {} is {}, not {}", name, attribute_text(found->second),
+                         attribute_text(value));
+    }
+    const auto passes = previous.attributes.find(attribute::SPP);
+    const auto seconds = previous.attributes.find(attribute::SECONDS);
+    const auto end = previous.attributes.end();
+    if (passes == end || !std::holds_alternative<int64_t>(passes->second) || seconds == end ||
+        !std::holds_alternative<double>(seconds->second) || std::get<int64_t>(passes->second) < 1) {
+        throw InputError("--resume: the picture's header doesn't tell how far it is");
+    }
+    return static_cast<uint64_t>(std::get<int64_t>(passes->second));
+}
+
+}  // namespace obscura::reference

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// How light along one camera ray is estimated: by the model of the kernels, or without it.
+#pragma once
+
+#include "reference/sampler.h"
+#include "reference/world.h"
+#include "scene/radiometry.h"
+#include "shared/wavefront.h"
+
+#include <array>
+#include <memory>
+
+namespace obscura::reference {
+
+enum class IntegratorKind { obscurance, path };
+
+// What one camera ray brings back.
+struct PathLight {
+    std::array<RgbD, BEAUTY_LAYERS> parts;  // radiance by LAYER_*; their sum is the pixel's
+    double coverage = 0;                    // 1 if the ray hit anything
+
+    PathLight() { parts.fill(RgbD(0)); }
+};
+
+class Integrator {
+  public:
+    virtual ~Integrator() = default;
+    virtual PathLight estimate(const Ray& camera_ray, const PathSampler& sampler) const = 0;
+};
+
+// The model of obscura render in double: the same picture for the same random numbers, but for rounding. d_max: m.
+std::unique_ptr<Integrator> make_obscurance_integrator(const World& world, const RenderSettings& settings,
+                                                       const Radiometry& radiometry, double d_max);
+
+// All light by unbiased path tracing, with diffuse interreflection in place of obscurances. Everything is in the first
+// part, LAYER_EMISSION.
+std::unique_ptr<Integrator> make_path_integrator(const World& world, const RenderSettings& settings);
+
+}  // namespace obscura::reference

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reference/reference_render.h"
+
+#include "base/error.h"
+#include "reference/accumulator.h"
+#include "reference/camera_rays.h"
+#include "reference/describe_reference.h"
+#include "sampling/sample_order.h"
+#include "wavefront/frame.h"
+#include "wavefront/plan.h"
+
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+
+namespace obscura::reference {
+namespace {
+
+// What every pass needs.
+struct Renderer {
+    const CameraRays& camera;
+    const Integrator& integrator;
+    PixelRect rect;
+
+    // One sample of each pixel; report returns false to stop, and then so does this.
+    template <typename Report>
+    bool render_pass(const SamplePlan& plan, uint32_t sample, std::vector<PathLight>& pixels,
+                     const Report& report) const;
+};
+
+template <typename Report>
+bool Renderer::render_pass(const SamplePlan& plan, uint32_t sample, std::vector<PathLight>& pixels,
+                           const Report& report) const {
+    std::atomic<bool> stopped{false};
+    std::mutex reporting;
+    tbb::parallel_for(rect.y0, rect.y1, [&](uint32_t y) {
+        if (stopped) return;
+        for (uint32_t x = rect.x0; x < rect.x1; ++x) {
+            const PathSampler sampler(plan, x, y, sample);
+            pixels[size_t{y - rect.y0} * rect.width() + (x - rect.x0)] =
+                integrator.estimate(camera.ray(x, y, sampler), sampler);
+        }
+        const std::lock_guard lock(reporting);
+        if (!stopped && !report(rect.width())) stopped = true;
+    });
+    return !stopped;
+}
+
+std::unique_ptr<Integrator> make_integrator(const ReferenceJob& job, const RenderSettings& settings,
+                                            const World& world, const ReferenceFacts& facts) {
+    if (job.integrator == IntegratorKind::path) return make_path_integrator(world, settings);
+    return make_obscurance_integrator(world, settings, facts.radiometry, facts.d_max);
+}
+
+Image place_image(const RenderSettings& settings, const PixelRect& rect) {
+    Image image;
+    image.full_width = static_cast<int32_t>(settings.width);
+    image.full_height = static_cast<int32_t>(settings.height);
+    image.x0 = static_cast<int32_t>(rect.x0);
+    image.y0 = static_cast<int32_t>(rect.y0);
+    image.x1 = static_cast<int32_t>(rect.x1);
+    image.y1 = static_cast<int32_t>(rect.y1);
+    return image;
+}
+
+}  // namespace
+
+ReferenceResult render_reference(const ReferenceJob& job, const ReferenceCallback& report) {
+    const auto start = std::chrono::steady_clock::now();
+    const RenderSettings settings = with_default_sky(job.scene, job.settings);
+    const ReferenceFacts facts = find_facts(job, settings);
+    const Camera& camera = select_camera(job.scene, settings);
+    check_aspect(settings, camera.aspect_ratio);
+    const PixelRect rect = crop_pixels(settings.crop, settings.width, settings.height);
+    ReferenceResult result;
+    result.image = place_image(settings, rect);
+    describe_reference(job, settings, facts, result.image);
+    const uint64_t planned = uint64_t{settings.spp} * job.sets;
+    Accumulator accumulator(rect.pixel_count(), settings.spp);
+    if (job.previous != nullptr) {
+        const uint64_t passes = passes_to_continue(*job.previous, result.image);
+        if (!accumulator.restore(*job.previous, passes))
+            throw InputError("--resume: the picture holds no sums to go on with");
+        if (passes > planned) {
+            throw InputError(
+                "--resume: the picture has {} samples per pixel already, more than the {} of {} sets", passes,
+                planned, job.sets);
+        }
+    }
+
+    const World world(job.scene, settings);
+    const std::unique_ptr<Integrator> integrator = make_integrator(job, settings, world, facts);
+    const CameraRays rays(camera, settings);
+    const Renderer renderer{rays, *integrator, rect};
+    const std::vector<uint32_t> order = bit_reversed_order(settings.spp);
+    const auto all = static_cast<double>(planned * rect.pixel_count());
+    std::vector<PathLight> pixels(rect.pixel_count());
+    const uint64_t samples_before = accumulator.passes() * rect.pixel_count();
+    const auto report_samples = [&](uint64_t samples) {
+        result.samples += samples;
+        return report(static_cast<double>(samples_before + result.samples) / all, result.samples);
+    };
+    while (result.complete && accumulator.passes() < planned) {
+        const SamplePlan plan(settings, settings.seed + accumulator.finished_sets());
+        const auto sample = static_cast<size_t>(accumulator.passes() % settings.spp);
+        result.complete = renderer.render_pass(plan, order[sample], pixels, report_samples);
+        if (result.complete) accumulator.add_pass(pixels);
+    }
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (accumulator.passes() == 0) return result;
+    accumulator.develop(result.image, job.integrator == IntegratorKind::obscurance);
+    describe_progress(accumulator.passes(), accumulator.finished_sets(), result, job.previous);
+    return result;
+}
+
+}  // namespace obscura::reference
