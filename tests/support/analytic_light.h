@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/math.h"
+#include "scene/material.h"
 
 namespace obscura::test {
 
@@ -54,6 +55,21 @@ inline double reflected_rectangle(const GgxLobe& lobe, const V3d& wo, const V3d&
             const double distance2 = point.length2();
             const V3d wi = point / std::sqrt(distance2);
             sum += lobe.brdf(wo, wi) * wi.y * wi.y / distance2;
+        }
+    }
+    return sum * u * v / STEPS / STEPS;
+}
+
+// The same through a white pane above the receiver, parallel to it. brdf: of the direction to the rectangle.
+template <typename Brdf>
+double rectangle_behind_pane(const Brdf& brdf, const V3d& corner, double u, double v) {
+    constexpr int STEPS = 500;
+    double sum = 0;
+    for (int i = 0; i < STEPS; ++i) {
+        for (int j = 0; j < STEPS; ++j) {
+            const V3d point = corner + V3d(u * (i + 0.5) / STEPS, 0, v * (j + 0.5) / STEPS);
+            const V3d wi = point.normalized();
+            sum += brdf(wi) * (1 - pane_reflectance(wi.y)) * wi.y * wi.y / point.length2();
         }
     }
     return sum * u * v / STEPS / STEPS;
