@@ -45,7 +45,8 @@ inline bool continues_glossy(global const Frame* frame, const Vertex* v) {
     return frame_has(frame, FRAME_SPECULAR) && v->depth < frame->seed.z;
 }
 
-// Weight of emission that a glossy ray found by itself, against the light samples that could have found it.
+// Weight of emission that a glossy ray found by itself, against the light samples that could have found it. t: from
+// where the ray was scattered, its origin; shadow rays see through panes, as it did.
 inline float emission_weight(global const Frame* frame, global const SceneTriangle* triangle,
                              global const AreaLight* area_lights, float pdf_sr, float t, float3 origin,
                              float3 direction) {
@@ -238,7 +239,8 @@ kernel void shade(global const Frame* frame, global const SceneTriangle* triangl
     const float4 origin = rays[RAY_ORIGIN * capacity + i];
     const uint slot = as_uint(origin.w);
     if (!check_slot(counters, slot, capacity, STAGE_SHADE, i)) return;
-    const float3 direction = rays[RAY_DIRECTION * capacity + i].xyz;
+    const float4 ray_direction = rays[RAY_DIRECTION * capacity + i];
+    const float3 direction = ray_direction.xyz;
     const float4 hit = rays[RAY_HIT * capacity + i];
     const float4 throughput = paths[path_index(frame, PATH_THROUGHPUT, slot)];
     const uint4 sample = as_uint4(paths[path_index(frame, PATH_SAMPLE, slot)]);
@@ -268,10 +270,11 @@ kernel void shade(global const Frame* frame, global const SceneTriangle* triangl
     const bool unlit = (v.flags & MATERIAL_UNLIT) != 0u;
     float3 emitted = (float3)(0.0f);
     if (NEED_EMISSION) {
-        emitted = unlit ? v.base
-                        : emitted_radiance(material, s->front) * emission_weight(frame, triangle, area_lights,
-                                                                                 throughput.w, hit.x,
-                                                                                 origin.xyz, direction);
+        emitted =
+            unlit ? v.base
+                  : emitted_radiance(material, s->front) *
+                        emission_weight(frame, triangle, area_lights, throughput.w, hit.x + ray_direction.w,
+                                        origin.xyz - ray_direction.w * direction, direction);
     }
     add_to_layer(frame, paths, emission_layer, slot,
                  (float4)(v.throughput * emitted, depth == 0u ? 1.0f : 0.0f));
@@ -303,7 +306,11 @@ kernel void shade(global const Frame* frame, global const SceneTriangle* triangl
             const uint r = atomic_inc(&counters[COUNT_RAYS]);
             const float3 next_origin = s->position + (side * s->offset) * s->n_geo;
             next_rays[RAY_ORIGIN * capacity + r] = (float4)(next_origin, as_float(slot));
-            next_rays[RAY_DIRECTION * capacity + r] = (float4)(next_direction, 0.0f);
+            // A ray that passes a pane straight on is still the one that was scattered before it.
+            const bool passes = side < 0.0f;
+            next_rays[RAY_DIRECTION * capacity + r] =
+                (float4)(next_direction, passes ? ray_direction.w + hit.x : 0.0f);
+            if (passes) pdf_sr = throughput.w;
             paths[path_index(frame, PATH_THROUGHPUT, slot)] = (float4)(v.throughput * weight, pdf_sr);
         }
     }

@@ -15,7 +15,10 @@ namespace {
 struct PathState {
     Ray ray;
     RgbD throughput{1, 1, 1};
-    double pdf_sr = 0;  // of a glossy direction, 0 = camera, mirror, pane
+    // Of the last glossy direction, 0 = camera or mirror, and where it was drawn. Passing a pane leaves both as they are,
+    // since shadow rays see through panes too.
+    double pdf_sr = 0;
+    V3d scattered_at{0, 0, 0};
     uint32_t depth = 0;
 };
 
@@ -34,7 +37,7 @@ class ObscuranceIntegrator : public Integrator {
     PathLight estimate(const Ray& camera_ray, const PathSampler& sampler) const override;
 
   private:
-    double emission_weight(const PathState& path, const Hit& hit) const;
+    double emission_weight(const PathState& path, const Surface& surface) const;
     void add_lights(const Vertex& vertex, const PathSampler& sampler, PathLight& light) const;
     void add_light(const Vertex& vertex, const LightSample& sample, PathLight& light) const;
     bool is_followed(uint32_t depth) const { return settings_.specular && depth < settings_.max_depth; }
@@ -78,7 +81,7 @@ PathLight ObscuranceIntegrator::estimate(const Ray& camera_ray, const PathSample
             emission += path->throughput * surface.base;
             return light;
         }
-        emission += path->throughput * surface.emitted() * emission_weight(*path, hit);
+        emission += path->throughput * surface.emitted() * emission_weight(*path, surface);
         const Vertex vertex{*path, surface, Bsdf(surface, path->ray.direction)};
         add_lights(vertex, sampler, light);
         if (ambient_ && max_component(vertex.bsdf.diffuse()) > 0) {
@@ -92,10 +95,11 @@ PathLight ObscuranceIntegrator::estimate(const Ray& camera_ray, const PathSample
 }
 
 // Of emission that a glossy ray found by itself, against the light samples that could have found it.
-double ObscuranceIntegrator::emission_weight(const PathState& path, const Hit& hit) const {
+double ObscuranceIntegrator::emission_weight(const PathState& path, const Surface& surface) const {
     if (path.pdf_sr == 0) return 1;
+    const double distance = (surface.position - path.scattered_at).length();
     const double light_pdf =
-        world_.lights.area_pdf_sr(hit.primitive, path.ray.origin, path.ray.direction, hit.t);
+        world_.lights.area_pdf_sr(surface.primitive, path.scattered_at, path.ray.direction, distance);
     return power_heuristic(path.pdf_sr, settings_.light_samples * light_pdf);
 }
 
@@ -179,6 +183,7 @@ std::optional<PathState> ObscuranceIntegrator::continuation(const Vertex& vertex
     const V2d choice = sampler.point(path.depth, Dimension::lobe);
     PathState next;
     next.depth = path.depth + 1;
+    next.scattered_at = surface.position;
     LobeSample sample;
     double albedo;  // of everything that may be followed
     V3d lift = surface.lift;
@@ -193,6 +198,8 @@ std::optional<PathState> ObscuranceIntegrator::continuation(const Vertex& vertex
         } else {
             sample.direction = path.ray.direction;
             sample.weight = passed / (1 - p_reflect);
+            sample.pdf_sr = path.pdf_sr;
+            next.scattered_at = path.scattered_at;
             lift = -lift;
         }
     } else if (bsdf.is_glossy()) {

@@ -9,7 +9,7 @@
 // --- Queues ------------------------------------------------------------------------------------------------
 // Ray: camera and glossy rays. Directions are unit vectors, t runs over (0, inf).
 #define RAY_ORIGIN 0     // xyz: world position; w: path slot (uint bits)
-#define RAY_DIRECTION 1  // xyz: unit direction; w: unused
+#define RAY_DIRECTION 1  // xyz: unit direction; w: way through panes since the last scattering, m
 #define RAY_HIT 2        // t, u, v (weights of corners 1 and 2), primitive (uint bits; NO_PRIMITIVE = miss)
 #define RAY_LANES 3
 
@@ -25,7 +25,7 @@
 #define POINT_LANES 3
 
 // --- Path slots: one per camera sample of the wave, slot = sample's index in the wave -----------------------
-// rgb: weight of the path so far; w: pdf_sr of the last glossy direction, 0 = mirror or camera.
+// rgb: weight of the path so far; w: pdf_sr of the last glossy direction, 0 = mirror or camera. Passing a pane keeps it.
 #define PATH_THROUGHPUT 0
 // uint bits: pixel seed, sample index, pixel's index in the crop, PATH_* flags.
 #define PATH_SAMPLE 1

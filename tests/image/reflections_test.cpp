@@ -133,6 +133,29 @@ TEST_F(Reflections, WhiteMetalReflectsItsDirectionalAlbedo) {
     table.expect_one_percent_matters();
 }
 
+// Light samples and the lobe's own rays both see the lamp through the pane: together they count it once.
+TEST_F(Reflections, GlossyReflectionsOfALampBehindAPaneEqualQuadrature) {
+    Material glass = clear_pane();
+    glass.base_color = Rgb(1);
+    const GgxLobe lobe{0.25, 0.9, 1};
+    SceneBuilder builder = floor_scene(metal(Rgb(0.9f), 0.5f));
+    builder.quad({-1.6f, 1, -0.5f}, {1.2f, 0, 0}, {0, 0, 1}, builder.material(matte(Rgb(0), Rgb(2))));
+    builder.quad({-2, 0.9f, -2}, {1.9f, 0, 0}, {0, 0, 4}, builder.material(glass));
+    const auto brdf = [&](const V3d& wi) { return lobe.brdf(EYE.normalized(), wi); };
+    const double expected = 2 * rectangle_behind_pane(brdf, V3d(-1.6, 1, -0.5), 1.2, 1);
+    const Scene scene = builder.finish();
+    ZTable table;
+    for (const uint32_t max_depth : {0u, 3u}) {
+        RenderSettings settings = point_settings(256, 4);
+        settings.max_depth = max_depth;
+        table.add(fmt::format("depth {}", max_depth),
+                  channel(render(scene, settings, {"specular.emission"}).image, "specular.emission", 0),
+                  expected, expected, 3e-6 * expected);
+    }
+    table.expect_no_failure();
+    table.expect_one_percent_matters();
+}
+
 TEST_F(Reflections, PaneShowsALampThroughBothFaces) {
     // Radiance 2 behind the pane, black before it.
     const double passed = 1 - 2 * DIELECTRIC_F0 / (1 + DIELECTRIC_F0);
