@@ -7,6 +7,8 @@
 #include "film/develop.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <iterator>
 
 namespace obscura::reference {
@@ -23,13 +25,16 @@ constexpr size_t VALUE_COUNT = SET_DEVIATIONS + 3;
 constexpr const char* HIGH_LAYER = "state.high";
 constexpr const char* LOW_LAYER = "state.low";
 
-double two_floats(double x) {
-    const auto high = static_cast<float>(x);
-    return static_cast<double>(high) + static_cast<double>(static_cast<float>(x - static_cast<double>(high)));
+// Rounded to the 48 bits of two floats; what is so small that the second float would lose bits counts as nothing. By its
+// bits, as GCC 12 drops the rounding of a conversion to float and back where it vectorises one.
+double storable(double x) {
+    constexpr uint64_t UNIT = uint64_t{1} << (53 - 48);
+    if (std::abs(x) < 0x1p-100) return 0;
+    return std::bit_cast<double>((std::bit_cast<uint64_t>(x) + UNIT / 2) & ~(UNIT - 1));
 }
 
 void add(double& sum, double value) {
-    sum = two_floats(sum + value);
+    sum = storable(sum + value);
 }
 
 std::vector<std::string> state_channels() {
