@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # The README's examples run as they stand there: every line of its sh blocks that starts with build/obscura, in
-# order, in an empty folder that has only build/obscura and scenes/. All succeed, but for the comparison of two
+# order, in an empty folder that has only build/obscura and scenes/. All succeed, but for the comparisons of two
 # pictures that differ.
 import os
 import pathlib
@@ -12,7 +12,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-DIFFERENT = "build/obscura compare cornell.exr flat.exr"  # exits with 1
+DIFFERENT = ("build/obscura compare cornell.exr flat.exr", "build/obscura compare model.exr light.exr")  # exit with 1
 
 
 def examples():

@@ -62,6 +62,12 @@ class Program(unittest.TestCase):
         documented = long_options(" ".join(row[0] for row in table("Options of render")))
         self.assertEqual(sorted(long_options(run_help("render")) - {"--help"}), sorted(documented))
 
+    def test_reference_options_are_those_of_the_help(self):
+        own = long_options(" ".join(row[0] for row in table("reference: what a picture should be")))
+        text = re.search(r"it takes those of render, but for (.*?)\.\s", README, re.DOTALL).group(1)
+        shared = long_options(run_help("render")) - long_options(text)
+        self.assertEqual(sorted(long_options(run_help("reference"))), sorted(own | shared))
+
     def test_layers_are_those_of_the_program(self):
         program = os.environ["OBSCURA_PROGRAM"]
         command = [program, "render", str(ROOT / "scenes/cornell"), "-o", os.devnull, "--layers", "nope"]
