@@ -2,6 +2,7 @@
 #include "reference/precise_tracer.h"
 
 #include "base/error.h"
+#include "reference/directions.h"
 
 #include <embree3/rtcore.h>
 
@@ -25,6 +26,7 @@ struct Geometry {
 struct Query {
     RTCIntersectContext context;  // first, so that a pointer to it is one to the whole
     Ray ray;
+    Basis basis;  // about the ray
     Hit hit;
 };
 
@@ -32,22 +34,31 @@ float float_above(double x) {
     return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
 }
 
-// Edge functions are the volumes that the ray's direction spans with the edges, seen from its origin. Neighbours
-// compute the same number with opposite signs for the edge they share, so no ray slips between them.
+// Seen along the ray: the ray is the origin of a plane.
+V2d project(const V3d& corner, const Query& query) {
+    const V3d from_origin = corner - query.ray.origin;
+    return {from_origin.dot(query.basis.tangent), from_origin.dot(query.basis.bitangent)};
+}
+
+// Neighbours compute the same number with opposite signs for the edge they share, from the same projected corners, so
+// no ray slips between them; nor through a corner, since the projection keeps the order of the edges around it.
+double edge_function(const V2d& from, const V2d& to) {
+    return from.x * to.y - from.y * to.x;
+}
+
 void intersect(const Corners& corners, uint32_t primitive, Query& query) {
-    const V3d& d = query.ray.direction;
-    const V3d a = corners[0] - query.ray.origin;
-    const V3d b = corners[1] - query.ray.origin;
-    const V3d c = corners[2] - query.ray.origin;
-    const double at_a = d.dot(c.cross(b));
-    const double at_b = d.dot(a.cross(c));
-    const double at_c = d.dot(b.cross(a));
+    const V2d a = project(corners[0], query);
+    const V2d b = project(corners[1], query);
+    const V2d c = project(corners[2], query);
+    const double at_a = edge_function(b, c);
+    const double at_b = edge_function(c, a);
+    const double at_c = edge_function(a, b);
     const bool inside = (at_a >= 0 && at_b >= 0 && at_c >= 0) || (at_a <= 0 && at_b <= 0 && at_c <= 0);
     const double sum = at_a + at_b + at_c;
     if (!inside || sum == 0) return;
     // From the plane: differences of float corners are exact, so its normal is good to the last places.
     const V3d n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-    const double t = n.dot(a) / n.dot(d);
+    const double t = n.dot(corners[0] - query.ray.origin) / n.dot(query.ray.direction);
     if (!(t > 0 && t < query.ray.t_max)) return;
     Hit& hit = query.hit;
     if (t < hit.t || (t == hit.t && primitive < hit.primitive)) hit = {t, at_b / sum, at_c / sum, primitive};
@@ -87,7 +98,7 @@ void occluded_callback(const RTCOccludedFunctionNArguments* arguments) {
 }
 
 Query make_query(const Ray& ray) {
-    Query query{{}, ray, {}};
+    Query query{{}, ray, Basis(ray.direction), {}};
     rtcInitIntersectContext(&query.context);
     return query;
 }
