@@ -49,6 +49,11 @@ std::vector<std::string> state_channels() {
 Accumulator::Accumulator(size_t pixel_count, uint32_t passes_per_set)
     : passes_per_set_(passes_per_set), values_(pixel_count * VALUE_COUNT) {}
 
+uint64_t Accumulator::bytes_per_pixel() {
+    constexpr uint64_t CHANNELS = 4 + 3 * BEAUTY_LAYERS + 3 + 2 * VALUE_COUNT;  // see develop()
+    return VALUE_COUNT * sizeof(double) + CHANNELS * sizeof(float);
+}
+
 void Accumulator::add_pass(std::span<const PathLight> pixels) {
     OBSCURA_CHECK(pixels.size() * VALUE_COUNT == values_.size(), "{} pixels for {} numbers", pixels.size(),
                   values_.size());

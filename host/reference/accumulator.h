@@ -17,6 +17,9 @@ class Accumulator {
     // passes_per_set: samples of a pixel in a set.
     Accumulator(size_t pixel_count, uint32_t passes_per_set);
 
+    // Memory of a pixel here and in its picture.
+    static uint64_t bytes_per_pixel();
+
     // One more sample of every pixel.
     void add_pass(std::span<const PathLight> pixels);
 

@@ -109,7 +109,7 @@ LightSample Lights::sample_area(const V3d& position, const V2d& u, double select
     LightSample sample;
     if (area_lights_.empty()) return sample;
     V2d on_light = u;
-    double probability;
+    double probability = 0;
     const AreaLight& light = area_lights_[pick(position, on_light, select_u, probability)];
     if (!(probability > 0)) return sample;
     const TriangleData& triangle = surfaces_.triangle(light.triangle);

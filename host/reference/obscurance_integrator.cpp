@@ -185,7 +185,7 @@ std::optional<PathState> ObscuranceIntegrator::continuation(const Vertex& vertex
     next.depth = path.depth + 1;
     next.scattered_at = surface.position;
     LobeSample sample;
-    double albedo;  // of everything that may be followed
+    double albedo = 0;  // of everything that may be followed
     V3d lift = surface.lift;
     if (bsdf.is_pane()) {
         const auto [reflected, passed] = bsdf.pane();

@@ -145,7 +145,7 @@ std::optional<PathState> PathIntegrator::continuation(const PathState& path, con
     PathState next = path;
     ++next.depth;
     LobeSample sample;
-    double probability;
+    double probability = 0;
     if (u.x < choice.pass) {
         probability = choice.pass;
         sample.direction = path.ray.direction;

@@ -2,10 +2,13 @@
 #include "reference/reference_render.h"
 
 #include "base/error.h"
+#include "base/memory.h"
+#include "base/units.h"
 #include "reference/accumulator.h"
 #include "reference/camera_rays.h"
 #include "reference/describe_reference.h"
 #include "sampling/sample_order.h"
+#include "wavefront/describe.h"
 #include "wavefront/frame.h"
 #include "wavefront/plan.h"
 
@@ -54,15 +57,12 @@ std::unique_ptr<Integrator> make_integrator(const ReferenceJob& job, const Rende
     return make_obscurance_integrator(world, settings, facts.radiometry, facts.d_max);
 }
 
-Image place_image(const RenderSettings& settings, const PixelRect& rect) {
-    Image image;
-    image.full_width = static_cast<int32_t>(settings.width);
-    image.full_height = static_cast<int32_t>(settings.height);
-    image.x0 = static_cast<int32_t>(rect.x0);
-    image.y0 = static_cast<int32_t>(rect.y0);
-    image.x1 = static_cast<int32_t>(rect.x1);
-    image.y1 = static_cast<int32_t>(rect.y1);
-    return image;
+void check_memory(const PixelRect& rect) {
+    const uint64_t bytes = rect.pixel_count() * (Accumulator::bytes_per_pixel() + sizeof(PathLight));
+    if (bytes <= physical_memory_bytes()) return;
+    throw InputError(
+        "{} x {} pixels take {} of memory, and this machine has {}; compute fewer (--cropwindow)",
+        rect.width(), rect.height(), bytes_text(bytes), bytes_text(physical_memory_bytes()));
 }
 
 }  // namespace
@@ -74,8 +74,9 @@ ReferenceResult render_reference(const ReferenceJob& job, const ReferenceCallbac
     const Camera& camera = select_camera(job.scene, settings);
     check_aspect(settings, camera.aspect_ratio);
     const PixelRect rect = crop_pixels(settings.crop, settings.width, settings.height);
+    check_memory(rect);
     ReferenceResult result;
-    result.image = place_image(settings, rect);
+    place_image(result.image, settings, rect);
     describe_reference(job, settings, facts, result.image);
     const uint64_t planned = uint64_t{settings.spp} * job.sets;
     Accumulator accumulator(rect.pixel_count(), settings.spp);

@@ -37,6 +37,15 @@ Attribute seed_attribute(uint64_t seed) {
 
 }  // namespace
 
+void place_image(Image& image, const RenderSettings& settings, const PixelRect& rect) {
+    image.full_width = static_cast<int32_t>(settings.width);
+    image.full_height = static_cast<int32_t>(settings.height);
+    image.x0 = static_cast<int32_t>(rect.x0);
+    image.y0 = static_cast<int32_t>(rect.y0);
+    image.x1 = static_cast<int32_t>(rect.x1);
+    image.y1 = static_cast<int32_t>(rect.y1);
+}
+
 void describe(const RenderJob& job, const std::string& device_name, RenderResult& result) {
     const RenderSettings& settings = result.settings;
     const Camera& camera = select_camera(job.scene, settings);

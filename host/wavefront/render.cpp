@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wavefront/render.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <future>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/units.h"
 #include "bvh/bvh.h"
 #include "film/develop.h"
@@ -54,10 +53,6 @@ std::vector<uint32_t> wanted_layers(const std::vector<std::string>& names) {
     return layers;
 }
 
-uint64_t physical_memory_bytes() {
-    return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
-}
-
 // The layers in host memory and the film's sums on their way to them; what Blender's names add to the layers takes less
 // than the sums, which are gone by then. A system that overcommits its memory would end the program half-way.
 void check_picture_memory(const PixelRect& rect, const std::vector<std::string>& names,
@@ -72,15 +67,6 @@ void check_picture_memory(const PixelRect& rect, const std::vector<std::string>&
         "(--cropwindow) or layers (--layers)",
         rect.width(), rect.height(), counted(names.size() + 1, "layer"), bytes_text(bytes),
         bytes_text(physical_memory_bytes()));
-}
-
-void place_image(Image& image, const RenderSettings& settings, const PixelRect& rect) {
-    image.full_width = static_cast<int32_t>(settings.width);
-    image.full_height = static_cast<int32_t>(settings.height);
-    image.x0 = static_cast<int32_t>(rect.x0);
-    image.y0 = static_cast<int32_t>(rect.y0);
-    image.x1 = static_cast<int32_t>(rect.x1);
-    image.y1 = static_cast<int32_t>(rect.y1);
 }
 
 std::map<std::string, uint64_t> peak_bytes(const Device& device) {

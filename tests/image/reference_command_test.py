@@ -91,6 +91,10 @@ class ReferenceCommand(unittest.TestCase):
                     self.reference("changed", "--integrator", "path", *arguments)
                     self.assertTrue(self.differs("changed", "path", "--layer", "beauty"), "the picture is the same")
 
+    def test_pictures_beyond_the_memory_are_refused(self):
+        result = self.reference("huge", "--width", "65536", "--height", "65536", code=2)
+        self.assertIn("65536 x 65536 pixels take ", result.stderr)
+
     def test_options_of_a_device_are_unknown(self):
         for option in (["--device", "0"], ["--wave-size", "64"], ["--layers", "all"], ["--needs", "all"]):
             self.reference("refused", *option, code=2)
