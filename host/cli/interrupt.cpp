@@ -15,7 +15,7 @@ void handle_interrupt(int signal) {
     interrupted = true;
     std::signal(signal, SIG_DFL);
     static constexpr char MESSAGE[] =
-        "\nobscura: stopping after this wave; interrupt again to stop at once\n";
+        "\nobscura: stopping after the work in hand; interrupt again to stop at once\n";
     [[maybe_unused]] const auto written = write(STDERR_FILENO, MESSAGE, sizeof(MESSAGE) - 1);
 }
 

@@ -6,13 +6,13 @@
 
 #include <random>
 
-#include "support/brute_force.h"
+#include "reference/brute_force.h"
 #include "support/scene_builder.h"
 
 namespace obscura::reference {
 namespace {
 
-using test::BruteHit;
+using obscura::BruteHit;
 using test::SceneBuilder;
 
 V3d random_direction(std::mt19937& random) {
@@ -36,8 +36,8 @@ BruteHit nearest_of_all(const Scene& scene, const Ray& ray) {
     for (uint32_t i = 0; i < scene.triangles.size(); ++i) {
         const std::array<V3f, 3> corners{scene.corner(i, 0).position, scene.corner(i, 1).position,
                                          scene.corner(i, 2).position};
-        const BruteHit hit = test::intersect({ray.origin, ray.direction}, corners, i);
-        if (hit.inside() && hit.t > 0 && hit.t < ray.t_max && test::nearer(hit, nearest)) nearest = hit;
+        const BruteHit hit = obscura::intersect({ray.origin, ray.direction}, corners, i);
+        if (hit.inside() && hit.t > 0 && hit.t < ray.t_max && nearer(hit, nearest)) nearest = hit;
     }
     return nearest;
 }
