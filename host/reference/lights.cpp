@@ -27,6 +27,16 @@ V3d triangle_weights(const V2d& u) {
     return {b.x, b.y, 1 - b.x - b.y};
 }
 
+// Irradiance in the middle of the scene; lamps count as no nearer than a quarter of its diagonal.
+double punctual_weight(const Scene& scene, const PunctualLight& light) {
+    const double intensity = mean_component(RgbD(light.intensity));
+    if (light.type == LightType::directional || scene.bounds.isEmpty()) return intensity;
+    const V3d low(scene.bounds.min), high(scene.bounds.max);
+    const double nearest = (high - low).length() / 4;
+    const double distance = std::max(nearest, (V3d(light.position) - (low + high) / 2).length());
+    return intensity / (distance * distance);
+}
+
 double pdf_sr_of(double probability, double area, double distance2, double cosine) {
     return probability * distance2 / (area * cosine);
 }
@@ -47,14 +57,14 @@ Lights::Lights(const Scene& scene, const SurfaceScene& surfaces) : surfaces_(sur
     }
     if (!powers.empty()) area_table_ = build_alias_table(powers);
 
-    std::vector<double> intensities;
+    std::vector<double> irradiances;
     for (const PunctualLight& light : scene.lights) {
-        const double intensity = mean_component(RgbD(light.intensity));
-        if (!(intensity > 0)) continue;
+        const double irradiance = punctual_weight(scene, light);
+        if (!(irradiance > 0)) continue;
         punctual_lights_.push_back(light);
-        intensities.push_back(intensity);
+        irradiances.push_back(irradiance);
     }
-    if (!intensities.empty()) punctual_table_ = build_alias_table(intensities);
+    if (!irradiances.empty()) punctual_table_ = build_alias_table(irradiances);
 }
 
 double Lights::weight(size_t light, const V3d& position) const {

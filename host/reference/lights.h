@@ -51,7 +51,7 @@ class Lights {
     std::vector<AliasEntry> area_table_;       // by power
     std::vector<uint32_t> light_of_triangle_;  // index into area_lights_, or NO_LIGHT
     std::vector<PunctualLight> punctual_lights_;
-    std::vector<AliasEntry> punctual_table_;  // by intensity
+    std::vector<AliasEntry> punctual_table_;  // by irradiance
 };
 
 }  // namespace obscura::reference

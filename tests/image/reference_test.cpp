@@ -30,7 +30,7 @@ const std::vector<std::string> PARTS{"emission",          "direct",          "am
 
 // Returns the folder.
 std::filesystem::path save_pictures(const std::string& name, const Image& device, const Image& reference) {
-    const std::filesystem::path folder = std::filesystem::path(OBSCURA_TEST_OUTPUT_DIR) / name;
+    const std::filesystem::path folder = std::filesystem::path(OBSCURA_BINARY_DIR) / "test-output" / name;
     std::filesystem::create_directories(folder);
     write_exr(device, folder / "device.exr");
     write_exr(reference, folder / "reference.exr");
