@@ -17,8 +17,8 @@ struct PathState {
     Ray ray;
     RgbD throughput{1, 1, 1};
     uint32_t depth = 0;
-    // Where the ray was scattered, and the density with which: lobe's choice times the lobe's pdf. Passing a pane leaves them as
-    // they are, since shadow rays see through panes too. 0 = nothing else finds what this ray finds.
+    // Where the ray was scattered, and the density with which: lobe's choice times the lobe's pdf. Passing a pane leaves
+    // both as they are, since shadow rays see through panes too. 0 = nothing else finds what this ray finds.
     V3d scattered_at{0, 0, 0};
     double pdf_sr = 0;
     uint32_t panes = 0;    // passed since

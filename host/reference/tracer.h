@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces batches of rays through Embree: the second opinion that the device's hits are compared with. An opinion, not the truth: even in robust mode Embree 3.13 lets
-// about one ray in 400 through that is aimed at a vertex of a closed mesh exactly (at edges none).
+// Traces batches of rays through Embree: the second opinion that the device's hits are compared with. An opinion, not
+// the truth: even in robust mode Embree 3.13 lets about one ray in 400 through that is aimed at a vertex of a closed
+// mesh exactly (at edges none).
 #pragma once
 
 #include "scene/scene.h"

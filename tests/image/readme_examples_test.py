@@ -12,7 +12,8 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-DIFFERENT = ("build/obscura compare cornell.exr flat.exr", "build/obscura compare model.exr light.exr")  # exit with 1
+DIFFERENT = ("build/obscura compare cornell.exr flat.exr",  # exit with 1
+             "build/obscura compare model.exr light.exr")
 
 
 def examples():
