@@ -1,47 +1,55 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stage film: adds the finished paths of a wave to the picture's sums.
 //   Reads    the layers of the path slots
-//   Writes   the layer sums of pixel p of the wave; its slots p, p + pixels, p + 2 pixels ... in that order, so that
-//            every cut of the samples into waves gives the same bits
+//   Writes   the layer sums of pixel p of the wave; its slots p, p + pixels, p + 2 pixels ... in that order, and with
+//            the rounding errors carried along, so that every cut of the samples into waves gives the same bits
 #include "lib/layers.clh"
 #include "lib/math.clh"
 #include "lib/status.clh"
 
+inline size_t film_index(global const Frame* frame, uint plane, uint pixel) {
+    return (size_t)plane * frame->crop.z + pixel;
+}
+
 // The layer variance: squared deviations from the running mean (Welford 1962). The mean comes from the layers' sums
 // before the wave, so that no cut changes it. passes: samples that the pixel had before the wave.
-inline void add_deviations(global const Frame* frame, global const float4* paths, global float4* sums,
-                           size_t pixel, uint first_slot, uint count, uint passes) {
+inline void add_deviations(global const Frame* frame, global const float4* paths, global FilmSum* sums,
+                           uint pixel, uint first_slot, uint count, uint passes) {
     const uint pixels = frame->crop.z;
-    float3 layer_sums[BEAUTY_LAYERS];
+    FilmSum layers[BEAUTY_LAYERS];
     float3 total = (float3)(0.0f);
     for (uint layer = 0u; layer < BEAUTY_LAYERS; ++layer) {
         const uint plane = layer_plane(frame, layer);
-        layer_sums[layer] = plane == NO_PLANE ? (float3)(0.0f) : sums[(size_t)plane * pixels + pixel].xyz;
-        total += layer_sums[layer];
+        if (plane == NO_PLANE) continue;
+        layers[layer] = sums[film_index(frame, plane, pixel)];
+        total += layers[layer].sum.xyz;
     }
-    const size_t target = (size_t)layer_plane(frame, LAYER_VARIANCE) * pixels + pixel;
-    float3 deviations = sums[target].xyz;
-    float n = (float)passes;
+    const size_t target = film_index(frame, layer_plane(frame, LAYER_VARIANCE), pixel);
+    FilmSum deviations = sums[target];
+    uint n = passes;
     for (uint slot = first_slot; slot < count; slot += pixels) {
         float3 beauty = (float3)(0.0f);
         float3 next_total = (float3)(0.0f);
         for (uint layer = 0u; layer < BEAUTY_LAYERS; ++layer) {
             const uint plane = layer_plane(frame, layer);
             if (plane == NO_PLANE) continue;
-            const float3 value = paths[path_index(frame, PATH_LAYERS + plane, slot)].xyz;
-            beauty += value;
-            layer_sums[layer] += value;
-            next_total += layer_sums[layer];
+            const float4 value = paths[path_index(frame, PATH_LAYERS + plane, slot)];
+            beauty += value.xyz;
+            add_compensated(&layers[layer].sum, &layers[layer].excess, value);
+            next_total += layers[layer].sum.xyz;
         }
-        if (n > 0.0f) deviations += (beauty - total / n) * (beauty - next_total / (n + 1.0f));
+        if (n > 0u) {
+            const float3 squares = (beauty - total / (float)n) * (beauty - next_total / (float)(n + 1u));
+            add_compensated(&deviations.sum, &deviations.excess, (float4)(squares, 0.0f));
+        }
         total = next_total;
-        n += 1.0f;
+        ++n;
     }
-    sums[target] = (float4)(deviations, 0.0f);
+    sums[target] = deviations;
 }
 
 // first_pixel, first_pass: where in the sample order the wave starts; count: samples in it.
-kernel void film(global const Frame* frame, global const float4* paths, global float4* sums,
+kernel void film(global const Frame* frame, global const float4* paths, global FilmSum* sums,
                  global uint* counters, uint first_pixel, uint first_pass, uint count) {
     const uint first_slot = (uint)get_global_id(0);
     const uint pixels = frame->crop.z;
@@ -53,13 +61,14 @@ kernel void film(global const Frame* frame, global const float4* paths, global f
     }
     const uint planes = layer_plane_count(frame);
     for (uint plane = 0u; plane < planes; ++plane) {
-        const size_t target = (size_t)plane * pixels + pixel;
-        float4 sum = sums[target];
+        if (plane == layer_plane(frame, LAYER_VARIANCE)) continue;
+        const size_t target = film_index(frame, plane, pixel);
+        FilmSum s = sums[target];
         for (uint slot = first_slot; slot < count; slot += pixels) {
             const float4 value = paths[path_index(frame, PATH_LAYERS + plane, slot)];
             if (!all_finite(value.xyz)) report_failure(counters, STATUS_NOT_FINITE, STAGE_FILM, slot);
-            sum += value;
+            add_compensated(&s.sum, &s.excess, value);
         }
-        sums[target] = sum;
+        sums[target] = s;
     }
 }

@@ -28,16 +28,12 @@ inline void gather_lights(global const Frame* frame, global const float4* visibi
     if (NEED_GLOSSY) add_to_layer(frame, paths, LAYER_SPECULAR_EMISSION, slot, (float4)(glossy, 0.0f));
 }
 
-// Compensated (Kahan 1965): open directions all add the same number, whose rounding errors would pile up.
+// Compensated: open directions all add the same number, whose rounding errors would pile up.
 inline float4 sum_results(global const float4* results, uint count) {
     float4 sum = (float4)(0.0f);
     float4 excess = (float4)(0.0f);
-    for (uint k = 0u; k < count; ++k) {
-        const float4 value = results[k] - excess;
-        const float4 next = sum + value;
-        excess = (next - sum) - value;
-        sum = next;
-    }
+    for (uint k = 0u; k < count; ++k)
+        add_compensated(&sum, &excess, results[k]);
     return sum;
 }
 

@@ -14,10 +14,6 @@ float component(const f32x4& v, size_t i) {
     return i == 0 ? v.x : i == 1 ? v.y : i == 2 ? v.z : v.w;
 }
 
-f32x4 operator*(const f32x4& v, float scale) {
-    return {v.x * scale, v.y * scale, v.z * scale, v.w * scale};
-}
-
 class Developer {
   public:
     Developer(const FilmSums& film, size_t pixel_count) : film_(film), pixel_count_(pixel_count) {}
@@ -25,10 +21,7 @@ class Developer {
     // Mean of a layer at a pixel; 0 where the layer isn't kept.
     f32x4 mean(uint32_t layer, size_t pixel) const {
         const uint64_t n = samples(pixel);
-        if (n == 0) return {0, 0, 0, 0};
-        const f32x4 total = sum(layer, pixel);
-        const auto count = static_cast<float>(n);
-        return {total.x / count, total.y / count, total.z / count, total.w / count};
+        return n == 0 ? f32x4{} : quotient(layer, pixel, n);
     }
 
     // Sum of the layers that partition it; w: coverage.
@@ -44,7 +37,7 @@ class Developer {
     // Of the samples, without bias; 0 where there are fewer than two.
     f32x4 variance(size_t pixel) const {
         const uint64_t n = samples(pixel);
-        return n < 2 ? f32x4{} : sum(LAYER_VARIANCE, pixel) * (1.0f / static_cast<float>(n - 1));
+        return n < 2 ? f32x4{} : quotient(LAYER_VARIANCE, pixel, n - 1);
     }
 
     // As pbrt-v4 has it: the variance over the mean, 0 where that is 0.
@@ -57,9 +50,15 @@ class Developer {
 
   private:
     uint64_t samples(size_t pixel) const { return film_.samples + (pixel < film_.pixels_ahead ? 1 : 0); }
-    f32x4 sum(uint32_t layer, size_t pixel) const {
+    // A layer's sum over a count, rounded once.
+    f32x4 quotient(uint32_t layer, size_t pixel, uint64_t count) const {
         const uint32_t plane = film_.planes[layer];
-        return plane == NO_PLANE ? f32x4{} : film_.sums[size_t{plane} * pixel_count_ + pixel];
+        if (plane == NO_PLANE) return {};
+        const auto& [sum, excess] = film_.sums[size_t{plane} * pixel_count_ + pixel];
+        const auto over = [count](double s, double e) {
+            return static_cast<float>((s - e) / static_cast<double>(count));
+        };
+        return {over(sum.x, excess.x), over(sum.y, excess.y), over(sum.z, excess.z), over(sum.w, excess.w)};
     }
 
     const FilmSums& film_;

@@ -29,7 +29,7 @@ const LayerInfo& layer_info(const std::string& name);  // names not in the table
 // The sums of one film: plane of each LAYER_* (NO_PLANE = not kept), plane * pixel_count + pixel.
 struct FilmSums {
     std::array<uint32_t, LAYER_COUNT> planes;
-    std::span<const f32x4> sums;
+    std::span<const FilmSum> sums;
     // Samples that each pixel has: the first pixels_ahead pixels have one more than the others.
     uint64_t samples = 0;
     uint64_t pixels_ahead = 0;

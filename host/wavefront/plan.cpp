@@ -102,7 +102,7 @@ Wave wave_at(uint64_t index, uint32_t capacity, uint32_t pixel_count, uint32_t s
 }
 
 std::vector<PixelRect> film_bands(const PixelRect& rect, uint32_t layer_planes, uint64_t max_film_bytes) {
-    const uint64_t row_bytes = uint64_t{rect.width()} * layer_planes * LANE_BYTES;
+    const uint64_t row_bytes = uint64_t{rect.width()} * layer_planes * sizeof(FilmSum);
     const uint64_t fits =
         std::min(max_film_bytes / std::max<uint64_t>(row_bytes, 1), MAX_INDEX / rect.width());
     const auto rows = static_cast<uint32_t>(std::clamp<uint64_t>(fits, 1, rect.height()));

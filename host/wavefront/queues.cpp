@@ -27,7 +27,7 @@ Queues allocate_queues(Device& device, const QueueShape& shape, uint32_t capacit
     queues.frame = Buffer(device, "frame", "queues", sizeof(Frame));
     queues.counters = Buffer(device, "counters", "status", sizeof(DeviceStatus));
     queues.sample_order = Buffer::holding(device, "sample_order", "queues", sample_order);
-    queues.film = Buffer(device, "film", "film", uint64_t{pixels} * shape.layer_planes * sizeof(f32x4));
+    queues.film = Buffer(device, "film", "film", uint64_t{pixels} * shape.layer_planes * sizeof(FilmSum));
     return queues;
 }
 

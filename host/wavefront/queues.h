@@ -25,7 +25,7 @@ struct Queues {
     Buffer frame;
     Buffer counters;  // DeviceStatus
     Buffer sample_order;
-    Buffer film;  // layer sums, plane * pixels + pixel
+    Buffer film;  // FilmSum, plane * pixels + pixel
 
     Buffer& buffer(Queue queue);
 };

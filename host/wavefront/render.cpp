@@ -60,7 +60,7 @@ void check_picture_memory(const PixelRect& rect, const std::vector<std::string>&
     uint64_t channels = 4;  // of beauty
     for (const std::string& name : names)
         channels += layer_info(name).channels.size();
-    const uint64_t bytes = rect.pixel_count() * (channels * sizeof(float) + film_planes * sizeof(f32x4));
+    const uint64_t bytes = rect.pixel_count() * (channels * sizeof(float) + film_planes * sizeof(FilmSum));
     if (bytes <= physical_memory_bytes()) return;
     throw InputError(
         "{} x {} pixels with {} take {} of memory, and this machine has {}; render fewer pixels "
@@ -148,7 +148,7 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
         result.complete = result.complete && done == band_samples;
         const uint64_t passes = done / band.pixel_count();
         result.samples_per_pixel = std::min(result.samples_per_pixel, static_cast<uint32_t>(passes));
-        std::vector<f32x4> sums(band.pixel_count() * shape.layer_planes);
+        std::vector<FilmSum> sums(band.pixel_count() * shape.layer_planes);
         if (done > 0) queues.film.download(sums);
         develop_band({planes, sums, passes, done % band.pixel_count()}, job.layers, result.image);
         samples_before += band_samples;

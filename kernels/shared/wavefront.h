@@ -78,4 +78,19 @@
 #define STAGE_GATHER 5u
 #define STAGE_FILM 6u
 
+#ifdef __cplusplus
+namespace obscura {
+#endif
+
+// A layer of a pixel in the film. A float alone stops growing at 2^24 terms of one size.
+typedef struct FilmSum {
+    f32x4 sum;
+    f32x4 excess;  // what rounding has made the sum too large by (Kahan)
+} FilmSum;
+
+#ifdef __cplusplus
+static_assert(sizeof(FilmSum) == 32, "device layout");
+}  // namespace obscura
+#endif
+
 #endif

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stage film: each pixel adds its own slots, in ascending order, to what it holds.
+#include "film/develop.h"
 #include "support/device.h"
 #include "support/kernel_queue.h"
 #include "support/scene_builder.h"
 
+#include <algorithm>
 #include <limits>
+#include <random>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace obscura {
 namespace {
@@ -34,8 +40,10 @@ class FilmStage : public test::DeviceTest {
                 bench.layer(layer, slot) = value(layer, slot);
         }
         for (uint32_t pixel = 0; pixel < PIXELS; ++pixel) {
-            for (uint32_t layer = 0; layer < BEAUTY_LAYERS; ++layer)
+            for (uint32_t layer = 0; layer < BEAUTY_LAYERS; ++layer) {
                 bench.film_layer(layer, pixel) = {1, 2, static_cast<float>(pixel), 0};
+                bench.film_excess(layer, pixel) = {};
+            }
         }
         return bench;
     }
@@ -45,22 +53,35 @@ class FilmStage : public test::DeviceTest {
         return {x, 1e7f * x, 1 / x, 1};
     }
 
-    // The sums that the contract asks for.
-    static f32x4 expected(uint32_t layer, uint32_t pixel, uint32_t first_pixel, uint32_t count) {
-        f32x4 sum{1, 2, static_cast<float>(pixel), 0};
+    // A float's sum with what it is too large by (Kahan).
+    struct Sum {
+        float sum, excess = 0;
+        void add(float value) {
+            const float corrected = value - excess;
+            const float next = sum + corrected;
+            excess = (next - sum) - corrected;
+            sum = next;
+        }
+    };
+    // The sums that the contract asks for, and their excess.
+    static std::pair<f32x4, f32x4> expected(uint32_t layer, uint32_t pixel, uint32_t first_pixel,
+                                            uint32_t count) {
+        Sum x{1}, y{2}, z{static_cast<float>(pixel)}, w{0};
         for (uint32_t slot = 0; slot < count; ++slot) {
             if ((first_pixel + slot) % PIXELS != pixel) continue;
             const f32x4 v = value(layer, slot);
-            sum = {sum.x + v.x, sum.y + v.y, sum.z + v.z, sum.w + v.w};
+            x.add(v.x), y.add(v.y), z.add(v.z), w.add(v.w);
         }
-        return sum;
+        return {{x.sum, y.sum, z.sum, w.sum}, {x.excess, y.excess, z.excess, w.excess}};
     }
 
     static void expect_sums(test::StageBench& bench, uint32_t first_pixel, uint32_t count) {
         for (uint32_t pixel = 0; pixel < PIXELS; ++pixel) {
             for (uint32_t layer = 0; layer < BEAUTY_LAYERS; ++layer) {
-                EXPECT_EQ(test::bits(bench.film_layer(layer, pixel)),
-                          test::bits(expected(layer, pixel, first_pixel, count)))
+                const auto [sum, excess] = expected(layer, pixel, first_pixel, count);
+                EXPECT_EQ(test::bits(bench.film_layer(layer, pixel)), test::bits(sum))
+                    << "pixel " << pixel << ", layer " << layer;
+                EXPECT_EQ(test::bits(bench.film_excess(layer, pixel)), test::bits(excess))
                     << "pixel " << pixel << ", layer " << layer;
             }
         }
@@ -107,8 +128,10 @@ TEST_F(FilmStage, DeviationsDontDependOnTheCut) {
         test::StageBench wave(device(), one_quad(), settings_of_picture(), SAMPLES * PIXELS,
                               {LAYER_VARIANCE});
         for (uint32_t layer = 0; layer < LAYER_COUNT; ++layer) {
-            for (uint32_t pixel = 0; pixel < PIXELS && wave.plane(layer) != NO_PLANE; ++pixel)
+            for (uint32_t pixel = 0; pixel < PIXELS && wave.plane(layer) != NO_PLANE; ++pixel) {
                 wave.film_layer(layer, pixel) = {};
+                wave.film_excess(layer, pixel) = {};
+            }
         }
         uint32_t pass = 0;
         for (const uint32_t passes : waves) {
@@ -141,7 +164,64 @@ TEST_F(FilmStage, DeviationsDontDependOnTheCut) {
             << "pixel " << pixel;
         EXPECT_EQ(deviations.z, 0) << "no sample differs";
         EXPECT_EQ(test::bits(cut.film_layer(LAYER_VARIANCE, pixel)), test::bits(deviations));
+        EXPECT_EQ(test::bits(cut.film_excess(LAYER_VARIANCE, pixel)),
+                  test::bits(whole.film_excess(LAYER_VARIANCE, pixel)));
     }
+}
+
+// One pixel of 2^26 samples, the same wave 64 times over: its mean and the deviations from it. A plain float sum of them
+// stalls half-way.
+TEST_F(FilmStage, ManySamplesKeepTheirMeanAndVariance) {
+    constexpr uint32_t SLOTS = 1 << 20, WAVES = 64;
+    constexpr uint32_t EMISSION = 0, VARIANCE = 1, PLANES = 2;
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> unit(0, 1);
+    std::vector<f32x4> paths(size_t{PATH_LAYERS + PLANES} * SLOTS);
+    double sum = 0, squares = 0;
+    for (uint32_t slot = 0; slot < SLOTS; ++slot) {
+        const float x = unit(random);
+        paths[size_t{PATH_LAYERS + EMISSION} * SLOTS + slot] = {x, 1, 1000 * x, 1};
+        sum += static_cast<double>(x);
+        squares += static_cast<double>(x) * static_cast<double>(x);
+    }
+    const double mean = sum / SLOTS, variance = squares / SLOTS - mean * mean;
+
+    Frame one_pixel{};
+    one_pixel.crop = {1, 1, 1, SLOTS};
+    auto* planes = reinterpret_cast<uint32_t*>(one_pixel.plane);
+    std::fill_n(planes, LAYER_COUNT, NO_PLANE);
+    planes[LAYER_EMISSION] = EMISSION;
+    planes[LAYER_VARIANCE] = VARIANCE;
+    planes[LAYER_COUNT] = PLANES;
+    const Buffer frame = Buffer::holding(device(), "frame", "test", std::span(&one_pixel, 1));
+    const Buffer path_buffer = Buffer::holding(device(), "paths", "test", paths);
+    Buffer film(device(), "film", "test", PLANES * sizeof(FilmSum));
+    Buffer counters(device(), "counters", "test", sizeof(DeviceStatus));
+    film.clear();
+    counters.clear();
+    ProgramLibrary library(device());
+    const cl::Kernel kernel = library.kernel("film");
+    const uint32_t first_pixel = 0, count = SLOTS;
+    for (uint32_t wave = 0; wave < WAVES; ++wave) {
+        const uint32_t first_pass = wave * SLOTS;
+        launch(device(), kernel, "film", 1, library.local_size(), frame, path_buffer, film, counters,
+               first_pixel, first_pass, count);
+    }
+
+    Image image;
+    FilmSums sums{};
+    std::copy_n(planes, LAYER_COUNT, sums.planes.begin());
+    const std::vector<FilmSum> found = film.contents<FilmSum>();
+    sums.sums = found;
+    sums.samples = uint64_t{SLOTS} * WAVES;
+    develop_band(sums, std::vector<std::string>{"emission", "Variance"}, image);
+    const std::vector<float>& emission = image.layers.at(1).pixels;
+    EXPECT_NEAR(static_cast<double>(emission.at(0)), mean, 1e-6 * mean);
+    EXPECT_EQ(emission.at(1), 1);
+    EXPECT_NEAR(static_cast<double>(emission.at(2)), 1000 * mean, 1e-6 * 1000 * mean);
+    const std::vector<float>& found_variance = image.layers.at(2).pixels;
+    EXPECT_NEAR(static_cast<double>(found_variance.at(0)), variance, 1e-5 * variance);
+    EXPECT_EQ(found_variance.at(1), 0);
 }
 
 }  // namespace

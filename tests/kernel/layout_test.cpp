@@ -9,6 +9,7 @@
 #include "shared/bvh.h"
 #include "shared/frame.h"
 #include "shared/scene.h"
+#include "shared/wavefront.h"
 #include "support/device.h"
 
 namespace obscura {
@@ -84,6 +85,9 @@ const std::vector<Question> QUESTIONS = {
     OFFSET(Frame, background),
     OFFSET(Frame, lights),
     OFFSET(Frame, plane),
+    SIZE(FilmSum),
+    OFFSET(FilmSum, sum),
+    OFFSET(FilmSum, excess),
 };
 
 #undef SIZE
@@ -94,6 +98,7 @@ std::string layout_kernel() {
 #include "shared/bvh.h"
 #include "shared/frame.h"
 #include "shared/scene.h"
+#include "shared/wavefront.h"
 kernel void layout(global const uchar* memory, global uint* answers, uint count) {
     if (get_global_id(0) >= count)
         return;

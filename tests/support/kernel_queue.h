@@ -129,7 +129,7 @@ class StageBench {
         for (const QueueSize& size : queue_sizes(shape))
             queues_.try_emplace(size.name, device, size.name, size.lanes, size.items * capacity,
                                 buffers.buffer(size.queue));
-        queues_.try_emplace("film", device, "film", plane_count_, rect.pixel_count(), buffers.film);
+        queues_.try_emplace("film", device, "film", plane_count_, 2 * rect.pixel_count(), buffers.film);
     }
 
     LaneQueue& rays() { return queues_.at("rays"); }
@@ -148,7 +148,9 @@ class StageBench {
 
     uint32_t plane(uint32_t layer) const { return reinterpret_cast<const uint32_t*>(frame.plane)[layer]; }
     f32x4& layer(uint32_t layer, uint32_t slot) { return paths().at(PATH_LAYERS + plane(layer), slot); }
-    f32x4& film_layer(uint32_t layer, uint32_t pixel) { return film().at(plane(layer), pixel); }
+    // A sum of the film and its excess.
+    f32x4& film_layer(uint32_t layer, uint32_t pixel) { return film().at(plane(layer), 2 * pixel); }
+    f32x4& film_excess(uint32_t layer, uint32_t pixel) { return film().at(plane(layer), 2 * pixel + 1); }
     // lobe: 0 diffuse, 1 glossy.
     f32x4& contribution(uint32_t sample, uint32_t lobe, uint32_t slot) {
         return paths().at(PATH_LAYERS + plane_count_ + 2 * sample + lobe, slot);

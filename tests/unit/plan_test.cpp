@@ -162,12 +162,12 @@ TEST(Plan, CropsTileThePictureLikePbrt) {
 
 TEST(Plan, FilmBandsCoverTheRectangleWithinTheLimit) {
     const PixelRect rect{10, 20, 110, 220};
-    for (const uint64_t limit : {uint64_t{1}, uint64_t{100} * 7 * 16 * 3, uint64_t{1} << 40}) {
+    for (const uint64_t limit : {uint64_t{1}, uint64_t{100} * 7 * sizeof(FilmSum) * 3, uint64_t{1} << 40}) {
         uint32_t y = rect.y0;
         for (const PixelRect& band : film_bands(rect, 7, limit)) {
             EXPECT_EQ(band.y0, y);
             EXPECT_EQ(band.width(), rect.width());
-            EXPECT_TRUE(band.height() == 1 || band.pixel_count() * 7 * 16 <= limit);
+            EXPECT_TRUE(band.height() == 1 || band.pixel_count() * 7 * sizeof(FilmSum) <= limit);
             y = band.y1;
         }
         EXPECT_EQ(y, rect.y1);
