@@ -102,7 +102,7 @@ TEST_F(HardRays, EdgesAndVerticesHaveOnlyExplainedDifferences) {
 
 // From inside to outside, aimed at edges and vertices: nothing gets out.
 TEST_F(HardRays, ClosedSphereHasNoLeaks) {
-    constexpr size_t COUNT = 200000;
+    constexpr size_t COUNT = 500000;
     for (const float offset : {0.0f, 1e3f, 1e5f}) {
         const Scene scene = moved(icosphere(5), offset);
         const V3f center = scene.bounds.center();
