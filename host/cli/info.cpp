@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "cli/json_output.h"
 #include "scene/gltf.h"
+#include "scene/local_frame.h"
 #include "scene/material.h"
 #include "scene/needs.h"
 #include "scene/radiometry.h"
@@ -66,7 +67,7 @@ Json cameras_json(const Scene& scene) {
     for (const Camera& camera : scene.cameras) {
         Json row = {{"name", camera.name},
                     {"orthographic", camera.orthographic},
-                    {"position", to_json(camera.camera_to_world.translation())}};
+                    {"position", to_json(world_camera(scene, camera).camera_to_world.translation())}};
         if (camera.orthographic)
             row["half_height"] = camera.half_height;
         else
@@ -105,7 +106,8 @@ Json to_json(const SceneInfo& info) {
                    {"needs", Json::array()},
                    {"needs_reasons", Json::object()}};
     if (!scene.bounds.isEmpty())
-        result["bounds"] = {{"min", to_json(scene.bounds.min)}, {"max", to_json(scene.bounds.max)}};
+        result["bounds"] = {{"min", to_json(V3d(scene.bounds.min) + scene.origin)},
+                            {"max", to_json(V3d(scene.bounds.max) + scene.origin)}};
     for (const Need& need : info.needs) {
         if (need.needed) result["needs"].push_back(need.name);
         result["needs_reasons"][need.name] = need.reason;
@@ -134,8 +136,9 @@ void print_geometry(const SceneInfo& info) {
     print_row("textures", "{}", scene.textures.size());
     if (scene.bounds.isEmpty()) return;
     for (int axis = 0; axis < 3; ++axis)
-        print_row(fmt::format("extent in {}", "xyz"[axis]), "{:.5g} to {:.5g} m", scene.bounds.min[axis],
-                  scene.bounds.max[axis]);
+        print_row(fmt::format("extent in {}", "xyz"[axis]), "{:.5g} to {:.5g} m",
+                  static_cast<double>(scene.bounds.min[axis]) + scene.origin[axis],
+                  static_cast<double>(scene.bounds.max[axis]) + scene.origin[axis]);
     print_row("diagonal", "{:.5g} m", info.diagonal);
 }
 
@@ -155,7 +158,7 @@ void print_cameras(const SceneInfo& info) {
     fmt::print("\nCameras\n");
     for (size_t i = 0; i < info.scene.cameras.size(); ++i) {
         const Camera& camera = info.scene.cameras[i];
-        const V3d position = camera.camera_to_world.translation();
+        const V3d position = world_camera(info.scene, camera).camera_to_world.translation();
         const std::string lens =
             camera.orthographic
                 ? fmt::format("orthographic, {:.4g} m high", 2 * camera.half_height)

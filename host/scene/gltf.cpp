@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/units.h"
 #include "scene/gltf_reader.h"
+#include "scene/local_frame.h"
 
 #include <algorithm>
 #include <set>
@@ -93,6 +94,7 @@ Scene load_gltf(const std::filesystem::path& file) {
         scene.cameras.push_back(default_camera(scene.bounds));
         log_info("{}: the scene has no camera; one was placed to show all of it.", reader.file);
     }
+    move_near_origin(scene);
     return std::move(scene);
 }
 

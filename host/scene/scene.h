@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene model: plain data, in world space, as the renderer sees it. Readers fill it, validation checks
+// The scene model: plain data, in world space but for Scene::origin, as the renderer sees it. Readers fill it, validation checks
 // it, everything else only reads it. Lengths are metres (glTF's unit), radiance W/(sr m^2) per linear RGB
 // channel, angles radians.
 #pragma once
@@ -99,7 +99,9 @@ struct Scene {
     std::vector<PunctualLight> lights;
     std::vector<Camera> cameras;     // at least one: readers add a default that frames the bounds
     uint32_t dropped_triangles = 0;  // zero area, dropped at load with a warning
-    Box3f bounds;                    // of all vertices used by triangles; empty without triangles
+    // World position of the zero of all coordinates here (scene/local_frame.h).
+    V3d origin{0, 0, 0};
+    Box3f bounds;  // of all vertices used by triangles; empty without triangles
 
     const Vertex& corner(uint32_t triangle, int i) const {
         return vertices[triangles[triangle].vertex[static_cast<size_t>(i)]];

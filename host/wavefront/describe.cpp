@@ -6,6 +6,7 @@
 #include "film/attributes.h"
 #include "sampling/filter.h"
 #include "sampling/sample_order.h"
+#include "scene/local_frame.h"
 #include "wavefront/frame.h"
 
 #include <limits>
@@ -48,7 +49,7 @@ void place_image(Image& image, const RenderSettings& settings, const PixelRect& 
 
 void describe(const RenderJob& job, const std::string& device_name, RenderResult& result) {
     const RenderSettings& settings = result.settings;
-    const Camera& camera = select_camera(job.scene, settings);
+    const Camera camera = world_camera(job.scene, select_camera(job.scene, settings));
     auto& attributes = result.image.attributes;
     attributes[attribute::SOFTWARE] = std::string("obscura " OBSCURA_VERSION);
     attributes[attribute::SCENE] = job.scene.name;

@@ -145,6 +145,7 @@ Frame make_frame(const FrameInput& input, const PixelRect& rect, uint32_t capaci
     frame.ambient = lane(resolve_ambient(input.radiometry, ambient_settings));
     frame.background = lane(V3d(settings.background.value_or(Rgb(0))));
     frame.lights = {input.area_light_count, input.point_light_count, static_cast<uint32_t>(falloff.kind), 0};
+    frame.world_origin = lane(input.scene.origin);
     for (uint32_t layer = 0; layer < LAYER_COUNT; ++layer) {
         reinterpret_cast<uint32_t*>(frame.plane)[layer] = input.planes[layer];
     }

@@ -84,6 +84,7 @@ const std::vector<Question> QUESTIONS = {
     OFFSET(Frame, ambient),
     OFFSET(Frame, background),
     OFFSET(Frame, lights),
+    OFFSET(Frame, world_origin),
     OFFSET(Frame, plane),
     SIZE(FilmSum),
     OFFSET(FilmSum, sum),

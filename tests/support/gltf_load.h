@@ -31,6 +31,11 @@ inline Loaded load(const GltfBuilder& file) {
     return loaded;
 }
 
+// Where a corner is in the world: the reader moves scenes that are far from its origin.
+inline V3f world_position(const Scene& scene, uint32_t triangle, int corner) {
+    return V3f(V3d(scene.corner(triangle, corner).position) + scene.origin);
+}
+
 inline void expect_near(const V3f& found, const V3f& expected, float tolerance = 1e-6f) {
     EXPECT_NEAR((found - expected).length(), 0, tolerance) << found << " instead of " << expected;
 }

@@ -19,6 +19,7 @@ using test::GltfBuilder;
 using test::load;
 using test::Loaded;
 using test::TemporaryFolder;
+using test::world_position;
 
 // The corners of a triangle, for comparison.
 std::array<V3f, 3> corners(const Scene& scene, uint32_t triangle) {
@@ -144,9 +145,9 @@ TEST(Gltf, HierarchyMultipliesFromTheRoot) {
     GltfBuilder file = triangle_on_node({{"rotation", {0, 0, h, h}}, {"translation", {0, 0, 1}}});
     file.append("nodes", {{"children", {0}}, {"scale", {2, 3, 4}}, {"translation", {10, 0, 0}}});
     const Scene scene = load(file).scene;
-    expect_near(scene.corner(0, 0).position, V3f(10, 0, 4));
-    expect_near(scene.corner(0, 1).position, V3f(10, 3, 4));
-    expect_near(scene.corner(0, 2).position, V3f(8, 0, 4));
+    expect_near(world_position(scene, 0, 0), V3f(10, 0, 4));
+    expect_near(world_position(scene, 0, 1), V3f(10, 3, 4));
+    expect_near(world_position(scene, 0, 2), V3f(8, 0, 4));
     EXPECT_EQ(scene.objects.size(), 1u);
 }
 
@@ -159,10 +160,10 @@ TEST(Gltf, MatrixEqualsItsParts) {
     const Scene matrix =
         load(triangle_on_node({{"matrix", {0, 0, -2, 0, 0, 3, 0, 0, 4, 0, 0, 0, 5, 6, 7, 1}}})).scene;
     for (int i = 0; i < 3; ++i) {
-        expect_near(parts.corner(0, i).position, matrix.corner(0, i).position);
+        expect_near(world_position(parts, 0, i), world_position(matrix, 0, i));
         expect_near(parts.corner(0, i).normal, matrix.corner(0, i).normal);
     }
-    expect_near(matrix.corner(0, 1).position, V3f(5, 6, 5));
+    expect_near(world_position(matrix, 0, 1), V3f(5, 6, 5));
     expect_near(matrix.corner(0, 0).normal, V3f(1, 0, 0));
 }
 
@@ -255,7 +256,7 @@ TEST(Gltf, TextFormWithEitherBufferEqualsBinary) {
                                     file.write_gltf(folder.file("b.gltf")), folder.file("external.gltf")}) {
         const Scene scene = load_gltf(path);
         ASSERT_EQ(scene.triangles.size(), 1u) << path;
-        EXPECT_EQ(scene.corner(0, 1).position, V3f(2, 0, 0));
+        EXPECT_EQ(world_position(scene, 0, 1), V3f(2, 0, 0));
         EXPECT_EQ(scene.name, std::filesystem::path(path).filename().string());
     }
 }
