@@ -191,8 +191,8 @@ TEST_F(HardScenes, RoughnessGoesToTheMirrorWithoutFireflies) {
         const std::vector<double> glossy = channel(plate(alpha, true), "", 0);
         double difference = 0;
         for (size_t i = 0; i < mirror.size(); ++i) {
-            // Light sample and lobe sample of one hit together bring at most the lamp twice.
-            EXPECT_LE(glossy[i], 2 * 5) << alpha << ", pixel " << i;
+            // By the power heuristic a light sample brings at most half of the lamp, a lobe sample all of it.
+            EXPECT_LE(glossy[i], 1.5 * 5 + 1e-5) << alpha << ", pixel " << i;
             difference += std::abs(glossy[i] - mirror[i]) / static_cast<double>(mirror.size());
         }
         EXPECT_LE(difference, before) << alpha;

@@ -100,5 +100,17 @@ TEST(MaxDistance, UnusualShareOfTheSceneWarns) {
     }
 }
 
+TEST(MaxDistance, ReachBelowTheRoundingOfCoordinatesIsWarnedOf) {
+    const Box3f far(V3f(9000, 0, 0), V3f(9010, 1, 1));
+    const auto said_of = [&](const char* text) {
+        testing::internal::CaptureStderr();
+        resolve_max_distance(parse_max_distance(text), far);
+        return testing::internal::GetCapturedStderr();
+    };
+    EXPECT_EQ(said_of("0.91"), "");
+    EXPECT_NE(said_of("0.9").find("less than 1e-4 of the scene's farthest coordinate, 9010 m"),
+              std::string::npos);
+}
+
 }  // namespace
 }  // namespace obscura
