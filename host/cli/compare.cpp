@@ -123,10 +123,17 @@ Verdict judge(const CompareOptions& options, const Image& image, const Image& re
 }
 
 Json numbers(const LayerDifference& layer) {
-    return {{"identical", layer.identical}, {"max_abs", layer.max_abs},
-            {"rmse", layer.rmse},           {"relmse", layer.relmse},
-            {"mape", layer.mape},           {"mse", layer.mse},
-            {"values", layer.value_count},  {"not_finite", layer.not_finite_count}};
+    return {{"identical", layer.identical},
+            {"max_abs", layer.max_abs},
+            {"rmse", layer.rmse},
+            {"relmse", layer.relmse},
+            {"mape", layer.mape},
+            {"mse", layer.mse},
+            {"bias", layer.bias},
+            {"pixels", layer.pixel_count},
+            {"values", layer.value_count},
+            {"differing_pixels", layer.differing_pixel_count},
+            {"not_finite", layer.not_finite_count}};
 }
 
 Json to_json(const CompareOptions& options, const Verdict& verdict) {

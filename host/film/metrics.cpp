@@ -16,22 +16,24 @@ bool same_bits(float a, float b) {
     return std::bit_cast<uint32_t>(a) == std::bit_cast<uint32_t>(b);
 }
 
-// Adds one pair of values; mse, relmse and mape hold sums until finish().
-void add_pair(LayerDifference& difference, float image, float reference) {
+// Adds one pair of values; mse, relmse, mape and bias hold sums until finish(). Returns the relative error.
+double add_pair(LayerDifference& difference, float image, float reference) {
     ++difference.value_count;
-    if (same_bits(image, reference)) return;
+    if (same_bits(image, reference)) return 0;
     difference.identical = false;
     const double relative = relative_error(image, reference);
     if (std::isnan(relative)) {
         ++difference.not_finite_count;
-        return;
+        return relative;
     }
     const double r = static_cast<double>(reference);
-    const double error = std::abs(static_cast<double>(image) - r);
-    difference.max_abs = std::max(difference.max_abs, error);
+    const double error = static_cast<double>(image) - r;
+    difference.max_abs = std::max(difference.max_abs, std::abs(error));
     difference.mse += error * error;
     difference.relmse += error * error / (r * r + RELATIVE_EPSILON);
     difference.mape += relative;
+    difference.bias += error;
+    return relative;
 }
 
 void finish(LayerDifference& difference) {
@@ -40,6 +42,7 @@ void finish(LayerDifference& difference) {
         difference.mse /= count;
         difference.relmse /= count;
         difference.mape /= count;
+        difference.bias /= count;
     }
     difference.rmse = std::sqrt(difference.mse);
 }
@@ -48,12 +51,16 @@ LayerDifference compare_layers(const Layer& image, const Layer& reference) {
     LayerDifference difference;
     difference.title = reference.title();
     const auto channels = common_channels(image, reference);
-    const size_t pixel_count = reference.pixels.size() / reference.channel_count();
-    for (size_t pixel = 0; pixel < pixel_count; ++pixel) {
+    difference.pixel_count = reference.pixels.size() / reference.channel_count();
+    for (size_t pixel = 0; pixel < difference.pixel_count; ++pixel) {
         const float* image_pixel = &image.pixels[pixel * image.channel_count()];
         const float* reference_pixel = &reference.pixels[pixel * reference.channel_count()];
-        for (const auto& [i, r] : channels)
-            add_pair(difference, image_pixel[i], reference_pixel[r]);
+        bool differs = false;
+        for (const auto& [i, r] : channels) {
+            const double relative = add_pair(difference, image_pixel[i], reference_pixel[r]);
+            differs = differs || !(relative <= ROUNDING_ERROR);
+        }
+        if (differs) ++difference.differing_pixel_count;
     }
     finish(difference);
     return difference;

@@ -4,6 +4,7 @@
 //
 //   mse = mean (I - R)^2      relmse = mean (I - R)^2 / (R^2 + 0.01)     (Rousselle et al. 2011)
 //   rmse = sqrt(mse)          mape = mean |I - R| / (|R| + 0.01)
+//   bias = mean (I - R)
 //
 // A pair of values of which one or both are NaN or infinite, and whose bits differ, has no distance: it is
 // left out of the means, counted, and never within any bound. Pairs with equal bits have distance 0 whatever
@@ -22,6 +23,9 @@ namespace obscura {
 
 // Keeps relative errors finite where the reference is black.
 inline constexpr double RELATIVE_EPSILON = 1e-2;
+// A pixel with a value whose relative error (as in mape) is larger differs by more than rounding explains: on another
+// device one of its rays went another way.
+inline constexpr double ROUNDING_ERROR = 1e-4;
 
 enum class Metric { rmse, relmse, mape, max_abs };
 
@@ -33,6 +37,9 @@ struct LayerDifference {
     double rmse = 0;
     double relmse = 0;
     double mape = 0;
+    double bias = 0;
+    uint64_t pixel_count = 0;
+    uint64_t differing_pixel_count = 0;  // by more than ROUNDING_ERROR, or without a distance
     uint64_t value_count = 0;
     uint64_t not_finite_count = 0;  // pairs without a distance
 

@@ -101,6 +101,9 @@ TEST_F(CompareCommand, JsonHasTheHeadlineAndEveryLayer) {
     EXPECT_DOUBLE_EQ(json.at("rmse"), 0.25 / std::sqrt(6));
     EXPECT_DOUBLE_EQ(json.at("relmse"), 0.0625 / 0.26 / 6);
     EXPECT_DOUBLE_EQ(json.at("mape"), 0.25 / 0.51 / 6);
+    EXPECT_DOUBLE_EQ(std::abs(json.at("bias").get<double>()), 0.25 / 6);
+    EXPECT_EQ(json.at("pixels"), 2u);
+    EXPECT_EQ(json.at("differing_pixels"), 1u);
     EXPECT_EQ(json.at("within_bound"), false);
     EXPECT_EQ(json.at("layers").size(), 3u);
     EXPECT_EQ(json.at("layers").at("N").at("identical"), true);

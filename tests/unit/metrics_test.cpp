@@ -38,6 +38,15 @@ TEST(Metrics, AgreeWithHandComputedValues) {
     EXPECT_DOUBLE_EQ(d.rmse, std::sqrt(4.25 / 6));
     EXPECT_DOUBLE_EQ(d.relmse, (0.25 / 0.01 + 4 / 9.01) / 6);
     EXPECT_DOUBLE_EQ(d.mape, (0.5 / 0.01 + 2 / 3.01) / 6);
+    EXPECT_DOUBLE_EQ(d.bias, (0.5 - 2) / 6);
+}
+
+TEST(Metrics, PixelsDifferByMoreThanRounding) {
+    const Image reference = make_row({{1, 1, 1}, {1, 1, 1}, {0, 0, 0}, {1, 1, 1}});
+    const LayerDifference d = beauty_difference(
+        make_row({{1, 1, 1}, {1.00009f, 1, 1}, {1e-5f, -1e-5f, 0}, {1, 1, NOT_A_NUMBER}}), reference);
+    EXPECT_EQ(d.pixel_count, 4u);
+    EXPECT_EQ(d.differing_pixel_count, 2u) << "the third and the last";
 }
 
 TEST(Metrics, EqualBitsAreIdenticalWhateverTheyHold) {
