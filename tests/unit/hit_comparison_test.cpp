@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// The comparison of two tracers' hits: Embree's own pass for the device's, and each planted error is found and told.
+#include "reference/hit_comparison.h"
+
+#include "reference/hard_rays.h"
+#include "reference/meshes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace obscura {
+namespace {
+
+class HitComparisonOfSphere : public testing::Test {
+  protected:
+    HitComparisonOfSphere() { comparison.embree().closest(rays, embree); }
+
+    HitTally tally(const std::vector<TraceHit>& device) const {
+        return comparison.compare(rays, device, embree, 1);
+    }
+    // What comes of the first hit with this change, which only the oracle can judge.
+    template <typename Change>
+    HitTally tally_after(Change change) const {
+        std::vector<TraceHit> device = embree;
+        change(
+            *std::ranges::find_if(device, [](const TraceHit& hit) { return hit.primitive != NO_PRIMITIVE; }));
+        return tally(device);
+    }
+
+    Scene scene = icosphere(2);
+    std::vector<TraceRay> rays = random_rays(scene, 2000, 1);
+    std::vector<TraceHit> embree = std::vector<TraceHit>(rays.size());
+    HitComparison comparison{scene};
+};
+
+TEST_F(HitComparisonOfSphere, EqualHitsAreRight) {
+    const HitTally all = tally(embree);
+    EXPECT_EQ(all.rays, 2000u);
+    EXPECT_EQ(all.judged, 2000u);
+    EXPECT_GT(all.hits, 50u);
+    EXPECT_LT(all.hits, 1950u);
+    EXPECT_EQ(all.device_wrong + all.embree_wrong, 0u);
+    EXPECT_GT(all.distance_share, 0);
+    EXPECT_LT(all.distance_share, 1);
+    EXPECT_LT(all.weight_share, 1);
+}
+
+TEST_F(HitComparisonOfSphere, PlantedErrorsAreTheDevices) {
+    const auto expect_wrong = [](const HitTally& tally) {
+        EXPECT_EQ(tally.device_wrong, 1u);
+        EXPECT_EQ(tally.embree_wrong, 0u);
+        ASSERT_EQ(tally.disagreements.size(), 1u);
+        EXPECT_EQ(tally.disagreements[0].outcome, Outcome::device_wrong);
+        EXPECT_NE(tally.disagreements[0].device, tally.disagreements[0].expected);
+    };
+    expect_wrong(tally_after([](TraceHit& hit) { hit.primitive = NO_PRIMITIVE; }));
+    expect_wrong(tally_after([](TraceHit& hit) { hit.primitive = (hit.primitive + 160) % 320; }));
+    expect_wrong(tally_after([](TraceHit& hit) { hit.t *= 1.0001f; }));
+    expect_wrong(tally_after([](TraceHit& hit) { std::swap(hit.u, hit.v); }));
+}
+
+TEST_F(HitComparisonOfSphere, KeepsTheFirstDisagreementsOnly) {
+    std::vector<TraceHit> device = embree;
+    for (TraceHit& hit : device)
+        hit.primitive = NO_PRIMITIVE;
+    HitTally all = tally(device);
+    EXPECT_GT(all.device_wrong, 50u);
+    EXPECT_LT(all.disagreements.size(), 50u);
+    const size_t kept = all.disagreements.size();
+    const HitTally once = all;
+    all.add(once);
+    EXPECT_EQ(all.device_wrong, 2 * once.device_wrong);
+    EXPECT_EQ(all.disagreements.size(), kept);
+}
+
+TEST(HitTexts, RayHasAllItsDigits) {
+    EXPECT_EQ(ray_text({{0.1f, 1, 2}, {0, -1, 0}, std::numeric_limits<float>::infinity()}),
+              "0.100000001,1,2,0,-1,0,inf");
+    EXPECT_EQ(hit_text({1, 0.5f, 0.25f, 7}), "triangle 7 at 1, u 0.5, v 0.25");
+    EXPECT_EQ(hit_text({1, 0, 0, NO_PRIMITIVE}), "no hit");
+}
+
+}  // namespace
+}  // namespace obscura
