@@ -91,7 +91,8 @@ std::string driver_load_failure(const std::filesystem::path& icd_file) {
     std::getline(std::ifstream(icd_file) >> std::ws, library);
     library.erase(library.find_last_not_of(" \t\r\n") + 1);
     if (library.empty()) return "the file names no driver library";
-    void* const loaded = dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL);
+    // It stays loaded: PoCL registers options with LLVM when it is loaded, and twice ends the program.
+    void* const loaded = dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL | RTLD_NODELETE);
     if (loaded == nullptr) return dlerror();
     const bool is_driver = dlsym(loaded, "clGetExtensionFunctionAddress") != nullptr;
     dlclose(loaded);

@@ -186,7 +186,10 @@ TEST_F(Launching, TooLargeGroupNamesStageAndCount) {
         FAIL() << "no exception";
     } catch (const DeviceError& error) {
         const std::string message = error.what();
-        EXPECT_NE(message.find("CL_INVALID_WORK_GROUP_SIZE"), std::string::npos) << message;
+        // A driver may find the size of the group or that of its one dimension too large.
+        const bool names_group = message.find("CL_INVALID_WORK_GROUP_SIZE") != std::string::npos;
+        const bool names_items = message.find("CL_INVALID_WORK_ITEM_SIZE") != std::string::npos;
+        EXPECT_TRUE(names_group || names_items) << message;
         EXPECT_NE(message.find("mix: "), std::string::npos) << message;
         EXPECT_NE(message.find("7 items"), std::string::npos) << message;
     }

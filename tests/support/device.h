@@ -15,9 +15,10 @@
 
 namespace obscura::test {
 
-// Opens the device on the first call. Only for tests that have checked that there is one.
+// Opens the device on the first call. Only for tests that have checked that there is one. It is never closed: when
+// static objects go, a driver may have lost what it keeps for each thread (Oclgrind writes to freed memory then).
 inline Device& shared_device() {
-    static Device device = open_device();
+    static Device& device = *new Device(open_device());
     return device;
 }
 

@@ -15,10 +15,10 @@
 
 namespace obscura::test {
 
-// The kernels of one local size, compiled at most once per program.
+// The kernels of one local size, compiled at most once per program. Like the device, they are never given back.
 inline ProgramLibrary& shared_library(uint32_t local_size) {
     Device& device = shared_device();
-    static std::map<uint32_t, ProgramLibrary> libraries;
+    static auto& libraries = *new std::map<uint32_t, ProgramLibrary>;
     return libraries.try_emplace(local_size, device, local_size).first->second;
 }
 
