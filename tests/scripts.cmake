@@ -15,7 +15,16 @@ obscura_script_test(unit include_order_test)
 obscura_script_test(unit readme_test)
 obscura_script_test(unit report_test)
 obscura_script_test(unit test_scenes)
+# Minutes on slow devices: only ctest -C devices runs these, as .ci/run does.
+function(obscura_devices_test name)
+  add_test(NAME ${name} CONFIGURATIONS devices
+           COMMAND ${OBSCURA_PYTHON} -B ${CMAKE_CURRENT_SOURCE_DIR}/devices/${name}.py)
+  set_tests_properties(${name} PROPERTIES LABELS devices ENVIRONMENT "OBSCURA_PROGRAM=$<TARGET_FILE:obscura>;${ARGN}")
+endfunction()
+
 if(TARGET obscura)
+  obscura_devices_test(oclgrind_test OCLGRIND_WORKAROUNDS=$<TARGET_FILE:oclgrind_workarounds>)
+  obscura_devices_test(rusticl_test)
   obscura_script_test(unit usage_test)
   obscura_script_test(conformance check_test)
   obscura_script_test(image interrupt_test)

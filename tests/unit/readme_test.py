@@ -39,7 +39,7 @@ class Readme(unittest.TestCase):
         self.assertEqual([], [link for link in links if not (ROOT / link).exists()])
 
     def test_named_tools_exist(self):
-        named = set(re.findall(r"`((?:tools|\.ci)/[a-z_/.]+)", README))
+        named = set(re.findall(r"`((?:tools|\.ci)/[a-z_/.-]+)", README))
         self.assertEqual([], [name for name in sorted(named) if not (ROOT / name).exists()])
 
     def test_environment_variables_equal_those_in_the_source(self):
