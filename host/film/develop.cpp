@@ -55,8 +55,9 @@ class Developer {
         const uint32_t plane = film_.planes[layer];
         if (plane == NO_PLANE) return {};
         const auto& [sum, excess] = film_.sums[size_t{plane} * pixel_count_ + pixel];
-        const auto over = [count](double s, double e) {
-            return static_cast<float>((s - e) / static_cast<double>(count));
+        const auto over = [count](float s, float e) {
+            return static_cast<float>((static_cast<double>(s) - static_cast<double>(e)) /
+                                      static_cast<double>(count));
         };
         return {over(sum.x, excess.x), over(sum.y, excess.y), over(sum.z, excess.z), over(sum.w, excess.w)};
     }
