@@ -9,15 +9,8 @@ namespace {
 
 enum QueueIndex : size_t { CAMERA, SHADOW, GLOSSY, OBSCURANCE };
 
-void add(ResultTally& sum, const ResultTally& more) {
-    sum.checked += more.checked;
-    sum.behind_panes += more.behind_panes;
-    sum.worst_share = std::max(sum.worst_share, more.worst_share);
-    sum.worst = std::max(sum.worst, more.worst);
-}
-
-std::string trace_options(const RenderJob& job) {
-    return stage_options(Stage::trace, {}, false, job.portable);
+std::string trace_options(bool portable) {
+    return stage_options(Stage::trace, {}, false, portable);
 }
 
 }  // namespace
@@ -32,7 +25,7 @@ SceneCheck check_scene(Device& device, ProgramLibrary& library, RenderJob job,
                        const RenderCallback& after_wave) {
     const HitComparison hits(job.scene);
     const ResultComparison results(job.scene, job.settings, hits);
-    RayCapture capture(device, library, build_bvh(job.scene), trace_options(job));
+    RayCapture capture(device, library, build_bvh(job.scene), trace_options(job.portable));
     // The oracle tries every triangle: as many tests as a few for every ray.
     const size_t every = 1 + job.scene.triangles.size() / 4;
 
@@ -46,12 +39,12 @@ SceneCheck check_scene(Device& device, ProgramLibrary& library, RenderJob job,
         compare_hits(capture.traced(view, frame, queues), view.depth == 0 ? CAMERA : GLOSSY);
 
         QueueCheck& shadow = check.queues[SHADOW];
-        add(shadow.results, results.shadow(capture.shadow(view, frame, queues), every, shadow.rays));
+        shadow.results.add(results.shadow(capture.shadow(view, frame, queues), every, shadow.rays));
 
         const CapturedRays rays = capture.obscurance(view, frame, queues);
         compare_hits(rays, OBSCURANCE);
         QueueCheck& obscurance = check.queues[OBSCURANCE];
-        add(obscurance.results, results.obscurance(rays, frame, every, obscurance.rays));
+        obscurance.results.add(results.obscurance(rays, frame, every, obscurance.rays));
     };
     check.rendered = render_scene(device, library, job, after_wave).rays;
     return check;
@@ -60,8 +53,7 @@ SceneCheck check_scene(Device& device, ProgramLibrary& library, RenderJob job,
 RayCheck check_ray(Device& device, ProgramLibrary& library, const Scene& scene, const TraceRay& ray,
                    bool portable) {
     const HitComparison hits(scene);
-    const std::string options = stage_options(Stage::trace, {}, false, portable);
-    const DeviceTracer tracer(device, library, build_bvh(scene), options);
+    const DeviceTracer tracer(device, library, build_bvh(scene), trace_options(portable));
     RayCheck check;
     check.device = tracer.closest({&ray, 1}).front();
     hits.embree().closest({&ray, 1}, {&check.embree, 1});

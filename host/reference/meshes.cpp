@@ -110,4 +110,14 @@ Scene nested_clusters(uint32_t triangles_per_cluster) {
     return mesh.finish();
 }
 
+Scene moved(Scene scene, float offset) {
+    scene.bounds = {};
+    for (Vertex& vertex : scene.vertices)
+        vertex.position += V3f(offset, -offset, offset);
+    for (const Triangle& triangle : scene.triangles)
+        for (const uint32_t corner : triangle.vertex)
+            scene.bounds.extendBy(scene.vertices[corner].position);
+    return scene;
+}
+
 }  // namespace obscura

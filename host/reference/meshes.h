@@ -62,4 +62,7 @@ Scene nested_scales(uint32_t count, float ratio = 0.5F);
 // builder that halves space has to go deeper than any stack.
 Scene nested_clusters(uint32_t triangles_per_cluster);
 
+// The scene far from the world's origin, by so many metres along each axis (down along y), where floats are coarse.
+Scene moved(Scene scene, float offset);
+
 }  // namespace obscura

@@ -46,6 +46,13 @@ std::string text(const std::array<double, 4>& values) {
 
 }  // namespace
 
+void ResultTally::add(const ResultTally& other) {
+    checked += other.checked;
+    behind_panes += other.behind_panes;
+    worst_share = std::max(worst_share, other.worst_share);
+    worst = std::max(worst, other.worst);
+}
+
 ResultComparison::ResultComparison(const Scene& scene, const RenderSettings& settings,
                                    const HitComparison& hits)
     : scene_(scene),
@@ -68,10 +75,7 @@ struct Tallies {
     HitTally hits;
 
     static Tallies sum(Tallies a, const Tallies& b) {
-        a.results.checked += b.results.checked;
-        a.results.behind_panes += b.results.behind_panes;
-        a.results.worst_share = std::max(a.results.worst_share, b.results.worst_share);
-        a.results.worst = std::max(a.results.worst, b.results.worst);
+        a.results.add(b.results);
         a.hits.add(b.hits);
         return a;
     }

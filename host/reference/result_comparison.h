@@ -30,6 +30,8 @@ struct ResultTally {
     double worst_share =
         0;  // largest difference that the device is to blame for, as a share of what rounding explains
     double worst = 0;  // the same, absolute
+
+    void add(const ResultTally& other);
 };
 
 class ResultComparison {

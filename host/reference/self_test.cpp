@@ -69,16 +69,6 @@ class SelfTest {
     }
 
   private:
-    static Scene moved(Scene scene, float offset) {
-        scene.bounds = {};
-        for (Vertex& vertex : scene.vertices)
-            vertex.position += V3f(offset, -offset, offset);
-        for (const Triangle& triangle : scene.triangles)
-            for (const uint32_t corner : triangle.vertex)
-                scene.bounds.extendBy(scene.vertices[corner].position);
-        return scene;
-    }
-
     static Rays from_inside(const Scene& scene, Rays rays) {
         const V3f center = scene.bounds.center();
         for (TraceRay& ray : rays) {

@@ -20,16 +20,6 @@ namespace {
 constexpr float FAR = std::numeric_limits<float>::infinity();
 constexpr float WORLD_OFFSETS[] = {0, 1000};  // m
 
-Scene moved(Scene scene, float offset) {
-    scene.bounds = {};
-    for (Vertex& vertex : scene.vertices)
-        vertex.position += V3f(offset, -offset, offset);
-    for (const Triangle& triangle : scene.triangles)
-        for (const uint32_t corner : triangle.vertex)
-            scene.bounds.extendBy(scene.vertices[corner].position);
-    return scene;
-}
-
 std::string first_text(const HitTally& tally) {
     if (tally.disagreements.empty()) return {};
     const Disagreement& ray = tally.disagreements.front();
