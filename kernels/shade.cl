@@ -189,8 +189,9 @@ inline void write_first_hit(global const Frame* frame, const Vertex* v, global c
                             float4 hit, global float4* paths) {
     const Surface* s = &v->surface;
     const float depth = dot(s->position - frame->camera_origin.xyz, frame->camera_forward.xyz);
-    add_to_layer(frame, paths, LAYER_POSITION, v->slot,
-                 (float4)(s->position + frame->world_origin.xyz, depth));
+    add_to_layer(
+        frame, paths, LAYER_POSITION, v->slot,
+        frame->world_origin.w * (float4)(s->position, depth) + (float4)(frame->world_origin.xyz, 0.0f));
     add_to_layer(frame, paths, LAYER_NORMAL, v->slot, (float4)(s->n_geo, 0.0f));
     add_to_layer(frame, paths, LAYER_SHADING, v->slot, (float4)(s->n_shade, 0.0f));
     if (has_layer(frame, LAYER_UV)) {

@@ -28,7 +28,6 @@ struct SceneInfo {
     Radiometry radiometry;
     std::vector<Need> needs;
     uint32_t emissive_triangles = 0;
-    double diagonal = 0;  // m
 };
 
 SceneInfo gather_info(const std::string& path) {
@@ -41,7 +40,6 @@ SceneInfo gather_info(const std::string& path) {
     for (const Triangle& triangle : scene.triangles) {
         if (is_emissive(scene.materials[triangle.material])) ++info.emissive_triangles;
     }
-    if (!scene.bounds.isEmpty()) info.diagonal = (V3d(scene.bounds.max) - V3d(scene.bounds.min)).length();
     return info;
 }
 
@@ -64,10 +62,11 @@ Json to_json(const Vector& v) {
 
 Json cameras_json(const Scene& scene) {
     Json rows = Json::array();
-    for (const Camera& camera : scene.cameras) {
+    for (const Camera& local : scene.cameras) {
+        const Camera camera = world_camera(scene, local);
         Json row = {{"name", camera.name},
                     {"orthographic", camera.orthographic},
-                    {"position", to_json(world_camera(scene, camera).camera_to_world.translation())}};
+                    {"position", to_json(camera.camera_to_world.translation())}};
         if (camera.orthographic)
             row["half_height"] = camera.half_height;
         else
@@ -80,8 +79,9 @@ Json cameras_json(const Scene& scene) {
 Json lights_json(const Scene& scene) {
     Json rows = Json::array();
     for (const PunctualLight& light : scene.lights)
-        rows.push_back(
-            {{"name", light.name}, {"type", type_name(light.type)}, {"intensity", to_json(light.intensity)}});
+        rows.push_back({{"name", light.name},
+                        {"type", type_name(light.type)},
+                        {"intensity", to_json(world_intensity(scene, light))}});
     return rows;
 }
 
@@ -98,7 +98,7 @@ Json to_json(const SceneInfo& info) {
                    {"lights", lights_json(scene)},
                    {"cameras", cameras_json(scene)},
                    {"area", info.radiometry.area},
-                   {"diagonal", info.diagonal},
+                   {"diagonal", diagonal(scene)},
                    {"emitted", to_json(info.radiometry.emitted)},
                    {"R_ave", to_json(info.radiometry.average_reflectivity)},
                    {"I_A", to_json(info.radiometry.ambient_bleeding)},
@@ -106,8 +106,8 @@ Json to_json(const SceneInfo& info) {
                    {"needs", Json::array()},
                    {"needs_reasons", Json::object()}};
     if (!scene.bounds.isEmpty())
-        result["bounds"] = {{"min", to_json(V3d(scene.bounds.min) + scene.origin)},
-                            {"max", to_json(V3d(scene.bounds.max) + scene.origin)}};
+        result["bounds"] = {{"min", to_json(world_position(scene, scene.bounds.min))},
+                            {"max", to_json(world_position(scene, scene.bounds.max))}};
     for (const Need& need : info.needs) {
         if (need.needed) result["needs"].push_back(need.name);
         result["needs_reasons"][need.name] = need.reason;
@@ -137,9 +137,9 @@ void print_geometry(const SceneInfo& info) {
     if (scene.bounds.isEmpty()) return;
     for (int axis = 0; axis < 3; ++axis)
         print_row(fmt::format("extent in {}", "xyz"[axis]), "{:.5g} to {:.5g} m",
-                  static_cast<double>(scene.bounds.min[axis]) + scene.origin[axis],
-                  static_cast<double>(scene.bounds.max[axis]) + scene.origin[axis]);
-    print_row("diagonal", "{:.5g} m", info.diagonal);
+                  world_position(scene, scene.bounds.min)[axis],
+                  world_position(scene, scene.bounds.max)[axis]);
+    print_row("diagonal", "{:.5g} m", diagonal(scene));
 }
 
 void print_lights(const SceneInfo& info) {
@@ -147,18 +147,17 @@ void print_lights(const SceneInfo& info) {
     print_row("area lights", "{}", counted(info.emissive_triangles, "emissive triangle"));
     for (const PunctualLight& light : info.scene.lights) {
         const char* unit = light.type == LightType::directional ? "W/m^2" : "W/sr";
-        print_row(
-            type_name(light.type), "{}{} {} (RGB)", light.name.empty() ? "" : light.name + ": ",
-            fmt::format("{:.5g} {:.5g} {:.5g}", light.intensity.x, light.intensity.y, light.intensity.z),
-            unit);
+        const RgbD intensity = world_intensity(info.scene, light);
+        print_row(type_name(light.type), "{}{} {} (RGB)", light.name.empty() ? "" : light.name + ": ",
+                  fmt::format("{:.5g} {:.5g} {:.5g}", intensity.x, intensity.y, intensity.z), unit);
     }
 }
 
 void print_cameras(const SceneInfo& info) {
     fmt::print("\nCameras\n");
     for (size_t i = 0; i < info.scene.cameras.size(); ++i) {
-        const Camera& camera = info.scene.cameras[i];
-        const V3d position = world_camera(info.scene, camera).camera_to_world.translation();
+        const Camera camera = world_camera(info.scene, info.scene.cameras[i]);
+        const V3d position = camera.camera_to_world.translation();
         const std::string lens =
             camera.orthographic
                 ? fmt::format("orthographic, {:.4g} m high", 2 * camera.half_height)

@@ -58,7 +58,7 @@ Attribute stored(const Attribute& value) {
 ReferenceFacts find_facts(const ReferenceJob& job, const RenderSettings& settings) {
     ReferenceFacts facts{compute_radiometry(job.scene), 0};
     if (job.integrator == IntegratorKind::path) return facts;
-    facts.d_max = resolve_max_distance(settings.d_max, job.scene.bounds);
+    facts.d_max = resolve_max_distance(settings.d_max, job.scene);
     check_ambient(job.scene, facts.radiometry, settings);
     return facts;
 }

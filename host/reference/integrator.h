@@ -28,7 +28,8 @@ class Integrator {
     virtual PathLight estimate(const Ray& camera_ray, const PathSampler& sampler) const = 0;
 };
 
-// The model of obscura render in double: the same picture for the same random numbers, but for rounding. d_max: m.
+// The model of obscura render in double: the same picture for the same random numbers, but for rounding. d_max: in the
+// scene's unit.
 std::unique_ptr<Integrator> make_obscurance_integrator(const World& world, const RenderSettings& settings,
                                                        const Radiometry& radiometry, double d_max);
 

@@ -54,7 +54,7 @@ bool Renderer::render_pass(const SamplePlan& plan, uint32_t sample, std::vector<
 std::unique_ptr<Integrator> make_integrator(const ReferenceJob& job, const RenderSettings& settings,
                                             const World& world, const ReferenceFacts& facts) {
     if (job.integrator == IntegratorKind::path) return make_path_integrator(world, settings);
-    return make_obscurance_integrator(world, settings, facts.radiometry, facts.d_max);
+    return make_obscurance_integrator(world, settings, facts.radiometry, facts.d_max / job.scene.unit);
 }
 
 void check_memory(const PixelRect& rect) {

@@ -58,7 +58,7 @@ ResultComparison::ResultComparison(const Scene& scene, const RenderSettings& set
     : scene_(scene),
       settings_(settings),
       hits_(hits),
-      d_max_(resolve_max_distance(settings.d_max, scene.bounds)),
+      d_max_(resolve_max_distance(settings.d_max, scene) / scene.unit),
       reach_(scene.triangles.empty() ? 0 : V3d(scene.bounds.size()).length()) {
     for (const Material& material : scene.materials)
         models_.push_back(surface_model(material));

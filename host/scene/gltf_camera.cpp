@@ -32,9 +32,9 @@ void append_camera(GltfReader& reader, const tinygltf::Node& node, const std::st
     camera.name = node.name.empty() ? source.name : node.name;
     if (source.type == "orthographic") {
         camera.orthographic = true;
-        camera.half_height = source.orthographic.ymag;
+        camera.half_height = source.orthographic.ymag / reader.scene.unit;
         if (!(camera.half_height > 0) || !std::isfinite(static_cast<float>(camera.half_height)))
-            reader.fail(place, "ymag must be positive, not {}.", camera.half_height);
+            reader.fail(place, "ymag must be positive, not {}.", source.orthographic.ymag);
     } else {
         camera.vertical_fov = source.perspective.yfov;
         camera.aspect_ratio = source.perspective.aspectRatio;

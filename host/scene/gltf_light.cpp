@@ -12,16 +12,20 @@ namespace {
 
 const char* const EXTENSION = "KHR_lights_punctual";
 
+// Of point and spot lights so that over a squared distance in the scene's unit it is W/m^2.
 Rgb light_intensity(const GltfReader& reader, const std::string& place, const tinygltf::Light& light) {
     if (!light.color.empty() && light.color.size() != 3)
         reader.fail(place, "color must be a list of 3 numbers.");
+    const double scale = light.type == "directional" ? 1 : 1 / (reader.scene.unit * reader.scene.unit);
     Rgb intensity;
     for (int channel = 0; channel < 3; ++channel) {
         const double color = light.color.empty() ? 1 : light.color[static_cast<size_t>(channel)];
-        const auto value = static_cast<float>(color * light.intensity);
+        const auto value = static_cast<float>(color * light.intensity * scale);
         if (!(value >= 0) || !std::isfinite(value))
-            reader.fail(place, "its intensity {} and color {} must be finite and not negative.",
-                        light.intensity, color);
+            reader.fail(
+                place,
+                "its intensity {} and color {} must be finite and not negative, in a unit of length of {} m.",
+                light.intensity, color, reader.scene.unit);
         intensity[channel] = value;
     }
     return intensity;
@@ -55,7 +59,7 @@ void append_light(GltfReader& reader, const tinygltf::Node& node, const std::str
     light.intensity = light_intensity(reader, place, source);
     if (!(source.range >= 0) || !std::isfinite(static_cast<float>(source.range)))
         reader.fail(place, "its range {} must be positive.", source.range);
-    light.range = static_cast<float>(source.range);
+    light.range = static_cast<float>(source.range / reader.scene.unit);
     light.position = V3f(to_world.translation());
     if (!std::isfinite(light.position.x) || !std::isfinite(light.position.y) ||
         !std::isfinite(light.position.z))

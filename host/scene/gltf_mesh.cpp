@@ -87,7 +87,7 @@ class PrimitiveReader {
         V3d world;
         to_world_.multVecMatrix(read_vector(*positions_, index), world);
         vertex.position = V3f(world);
-        check_finite(vertex.position, "position", index);
+        check_finite(V3f(reader_.scene.unit * world), "position", index);
         if (normals_) {
             const V3d local = read_vector(*normals_, index);
             V3d normal = local.x * cofactors_[0] + local.y * cofactors_[1] + local.z * cofactors_[2];
@@ -120,13 +120,9 @@ class PrimitiveReader {
     std::vector<uint32_t> scene_index_;  // per vertex of the accessor
 };
 
-bool has_area(const GltfReader& reader, const std::string& place, const std::array<uint32_t, 3>& corners) {
-    const std::vector<Vertex>& vertices = reader.scene.vertices;
-    const float product = edge_product(vertices[corners[0]].position, vertices[corners[1]].position,
-                                       vertices[corners[2]].position);
-    if (!std::isfinite(product))
-        reader.fail(place, "a triangle's sides are so long that their product overflows.");
-    return product >= std::numeric_limits<float>::min();
+bool has_area(const std::vector<Vertex>& vertices, const std::array<uint32_t, 3>& corners) {
+    return edge_product(vertices[corners[0]].position, vertices[corners[1]].position,
+                        vertices[corners[2]].position) >= std::numeric_limits<float>::min();
 }
 
 // Corner k of triangle t in a list, strip or fan (glTF 2.0 specification, 3.7.2.1).
@@ -185,25 +181,50 @@ void append_primitive(GltfReader& reader, const tinygltf::Primitive& primitive, 
             corners[k] = vertices.use_vertex(indices ? indices->index(at) : static_cast<uint32_t>(at));
         }
         if (vertices.mirrored()) std::swap(corners[1], corners[2]);
-        if (has_area(reader, place, corners))
+        if (has_area(reader.scene.vertices, corners))
             reader.scene.triangles.push_back({corners, material, object});
         else
             ++reader.scene.dropped_triangles;
     }
 }
 
+std::string primitive_place(const tinygltf::Mesh& mesh, int mesh_index, size_t primitive) {
+    const std::string place = gltf_place("mesh", mesh.name, static_cast<size_t>(mesh_index));
+    return fmt::format("{} primitive {}", place, primitive);
+}
+
 }  // namespace
+
+double mesh_extent(const GltfReader& reader, int mesh_index, const M44d& transform) {
+    if (mesh_index < 0) return 0;
+    const tinygltf::Mesh& mesh = reader.model.meshes[static_cast<size_t>(mesh_index)];
+    double extent = 0;
+    for (size_t p = 0; p < mesh.primitives.size(); ++p) {
+        const auto found = mesh.primitives[p].attributes.find("POSITION");
+        if (found == mesh.primitives[p].attributes.end()) continue;
+        const AccessorView positions(reader, found->second,
+                                     primitive_place(mesh, mesh_index, p) + ": POSITION");
+        if (positions.components() != 3) continue;  // append_mesh tells of it
+        for (size_t i = 0; i < positions.count(); ++i) {
+            const V3d local(positions.value(i, 0), positions.value(i, 1), positions.value(i, 2));
+            const V3d placed = local * transform;
+            for (int axis = 0; axis < 3; ++axis)
+                if (std::isfinite(placed[axis])) extent = std::max(extent, std::abs(placed[axis]));
+        }
+    }
+    return extent;
+}
 
 void append_mesh(GltfReader& reader, int mesh_index, const M44d& to_world, const std::string& object_name) {
     const tinygltf::Mesh& mesh = reader.model.meshes[static_cast<size_t>(mesh_index)];
     const auto object = static_cast<uint32_t>(reader.scene.objects.size());
     const size_t first = reader.scene.triangles.size();
-    const std::string place = gltf_place("mesh", mesh.name, static_cast<size_t>(mesh_index));
     for (size_t i = 0; i < mesh.primitives.size(); ++i)
-        append_primitive(reader, mesh.primitives[i], fmt::format("{} primitive {}", place, i), to_world,
-                         object);
+        append_primitive(reader, mesh.primitives[i], primitive_place(mesh, mesh_index, i), to_world, object);
     const size_t last = reader.scene.triangles.size();
-    if (last > MOST_VERTICES) reader.fail(place, "the scene has too many triangles.");
+    if (last > MOST_VERTICES)
+        reader.fail(gltf_place("mesh", mesh.name, static_cast<size_t>(mesh_index)),
+                    "the scene has too many triangles.");
     reader.scene.objects.push_back(
         {object_name, static_cast<uint32_t>(first), static_cast<uint32_t>(last - first)});
 }

@@ -2,6 +2,7 @@
 // The node tree: transforms in double from the roots down, and what each node carries. Imath's row vectors
 // and glTF's column-major column vectors have the same layout in memory, so matrices are copied as they are.
 #include "scene/gltf_reader.h"
+#include "scene/local_frame.h"
 
 #include <Imath/ImathMatrixAlgo.h>
 #include <Imath/ImathQuat.h>
@@ -13,7 +14,7 @@ namespace obscura {
 
 namespace {
 
-struct Visit {
+struct PendingNode {
     int node;
     M44d parent_to_world;
 };
@@ -76,12 +77,17 @@ std::vector<int> root_nodes(const GltfReader& reader) {
     return roots;
 }
 
+// Index of the mesh that the node carries, -1 for none.
+int node_mesh(const GltfReader& reader, size_t index, const std::string& place) {
+    const int mesh = reader.model.nodes[index].mesh;
+    if (mesh >= 0 && static_cast<size_t>(mesh) >= reader.model.meshes.size())
+        reader.fail(place, "mesh {} does not exist; the file has {}.", mesh, reader.model.meshes.size());
+    return mesh;
+}
+
 void append_node(GltfReader& reader, size_t index, const std::string& place, const M44d& to_world) {
     const tinygltf::Node& node = reader.model.nodes[index];
-    if (node.mesh >= 0) {
-        if (static_cast<size_t>(node.mesh) >= reader.model.meshes.size())
-            reader.fail(place, "mesh {} does not exist; the file has {}.", node.mesh,
-                        reader.model.meshes.size());
+    if (node_mesh(reader, index, place) >= 0) {
         const std::string& mesh_name = reader.model.meshes[static_cast<size_t>(node.mesh)].name;
         const std::string name = !node.name.empty()   ? node.name
                                  : !mesh_name.empty() ? mesh_name
@@ -94,6 +100,33 @@ void append_node(GltfReader& reader, size_t index, const std::string& place, con
     append_light(reader, node, place, to_world);
 }
 
+// Calls visit(index, place, to_world) for each node of the scene to render, parents before children.
+template <typename Visitor>
+void visit_nodes(const GltfReader& reader, const M44d& root_to_world, const Visitor& visit) {
+    const auto& nodes = reader.model.nodes;
+    std::vector<bool> seen(nodes.size(), false);
+    std::vector<PendingNode> stack;
+    const auto push_reversed = [&](const std::vector<int>& children, const M44d& to_world) {
+        for (auto child = children.rbegin(); child != children.rend(); ++child)
+            stack.push_back({*child, to_world});
+    };
+    push_reversed(root_nodes(reader), root_to_world);
+    while (!stack.empty()) {
+        const PendingNode pending = stack.back();
+        stack.pop_back();
+        if (pending.node < 0 || static_cast<size_t>(pending.node) >= nodes.size())
+            reader.fail("nodes", "node {} does not exist; the file has {}.", pending.node, nodes.size());
+        const auto index = static_cast<size_t>(pending.node);
+        const std::string place = gltf_place("node", nodes[index].name, index);
+        if (seen[index])
+            reader.fail(place, "it is its own ancestor, or has two parents; nodes must form a tree.");
+        seen[index] = true;
+        const M44d to_world = local_matrix(reader, place, nodes[index]) * pending.parent_to_world;
+        visit(index, place, to_world);
+        push_reversed(nodes[index].children, to_world);
+    }
+}
+
 }  // namespace
 
 void append_nodes(GltfReader& reader) {
@@ -101,28 +134,15 @@ void append_nodes(GltfReader& reader) {
         reader.notices.add("only the default scene is rendered; others are ignored", "other scene");
     for (size_t i = 0; i < reader.model.animations.size(); ++i)
         reader.notices.add("animations are not played; nodes keep their place in the file", "animation");
-    const auto& nodes = reader.model.nodes;
-    std::vector<bool> seen(nodes.size(), false);
-    std::vector<Visit> stack;
-    const auto push_reversed = [&](const std::vector<int>& children, const M44d& to_world) {
-        for (auto child = children.rbegin(); child != children.rend(); ++child)
-            stack.push_back({*child, to_world});
-    };
-    push_reversed(root_nodes(reader), M44d());
-    while (!stack.empty()) {
-        const Visit visit = stack.back();
-        stack.pop_back();
-        if (visit.node < 0 || static_cast<size_t>(visit.node) >= nodes.size())
-            reader.fail("nodes", "node {} does not exist; the file has {}.", visit.node, nodes.size());
-        const auto index = static_cast<size_t>(visit.node);
-        const std::string place = gltf_place("node", nodes[index].name, index);
-        if (seen[index])
-            reader.fail(place, "it is its own ancestor, or has two parents; nodes must form a tree.");
-        seen[index] = true;
-        const M44d to_world = local_matrix(reader, place, nodes[index]) * visit.parent_to_world;
-        append_node(reader, index, place, to_world);
-        push_reversed(nodes[index].children, to_world);
-    }
+    double extent = 0;
+    visit_nodes(reader, M44d(), [&](size_t index, const std::string& place, const M44d& to_world) {
+        extent = std::max(extent, mesh_extent(reader, node_mesh(reader, index, place), to_world));
+    });
+    reader.scene.unit = scene_unit(extent);
+    visit_nodes(reader, M44d().setScale(1 / reader.scene.unit),
+                [&](size_t index, const std::string& place, const M44d& to_world) {
+                    append_node(reader, index, place, to_world);
+                });
 }
 
 }  // namespace obscura

@@ -86,7 +86,10 @@ int32_t use_texture(GltfReader& reader, int texture, const std::string& place);
 // Mean over all texels, each channel in [0, 1]: stands in for textures that are not supported yet.
 V3d mean_texel(GltfReader& reader, int texture, const std::string& place, bool srgb);
 
-// gltf_mesh.cpp: adds a mesh as one object, its vertices transformed to world space.
+// gltf_mesh.cpp: the largest coordinate of a mesh in the space that the transform leads to; 0 without a mesh (-1).
+double mesh_extent(const GltfReader& reader, int mesh, const M44d& transform);
+// to_world, here and below: from the node's space to the scene's, which counts in Scene::unit.
+// Adds a mesh as one object, its vertices transformed to world space.
 void append_mesh(GltfReader& reader, int mesh, const M44d& to_world, const std::string& object_name);
 
 // gltf_light.cpp, gltf_camera.cpp: the light or camera that a node carries, if any; place: the node's.

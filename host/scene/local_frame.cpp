@@ -15,7 +15,18 @@ float subtractable_middle(float low, float high) {
     return same_side && farthest <= 2 * nearest ? low + (high - low) / 2 : 0;
 }
 
+// Extents in metres that products of three lengths, and of three smaller ones, leave in the range of floats.
+constexpr double SMALLEST_USUAL_EXTENT = 0x1p-20;
+constexpr double LARGEST_USUAL_EXTENT = 0x1p20;
+
 }  // namespace
+
+double scene_unit(double extent) {
+    if (extent == 0 || (extent >= SMALLEST_USUAL_EXTENT && extent <= LARGEST_USUAL_EXTENT)) return 1;
+    int exponent = 0;
+    std::frexp(extent, &exponent);
+    return std::ldexp(1.0, exponent);
+}
 
 void move_near_origin(Scene& scene) {
     if (scene.bounds.isEmpty()) return;
@@ -23,7 +34,7 @@ void move_near_origin(Scene& scene) {
     for (int axis = 0; axis < 3; ++axis)
         middle[axis] = subtractable_middle(scene.bounds.min[axis], scene.bounds.max[axis]);
     if (middle == V3f(0)) return;
-    scene.origin += V3d(middle);
+    scene.origin += scene.unit * V3d(middle);
     for (Vertex& vertex : scene.vertices)
         vertex.position -= middle;
     scene.bounds.min -= middle;
@@ -35,11 +46,21 @@ void move_near_origin(Scene& scene) {
             camera.camera_to_world[3][axis] -= static_cast<double>(middle[axis]);
 }
 
+V3d world_position(const Scene& scene, const V3f& position) {
+    return scene.origin + scene.unit * V3d(position);
+}
+
+RgbD world_intensity(const Scene& scene, const PunctualLight& light) {
+    const double squared = light.type == LightType::directional ? 1 : scene.unit * scene.unit;
+    return squared * RgbD(light.intensity);
+}
+
 Camera world_camera(const Scene& scene, const Camera& camera) {
-    Camera moved = camera;
+    Camera placed = camera;
     for (int axis = 0; axis < 3; ++axis)
-        moved.camera_to_world[3][axis] += scene.origin[axis];
-    return moved;
+        placed.camera_to_world[3][axis] = scene.origin[axis] + scene.unit * camera.camera_to_world[3][axis];
+    placed.half_height *= scene.unit;
+    return placed;
 }
 
 }  // namespace obscura

@@ -69,14 +69,15 @@ Radiometry compute_radiometry(const Scene& scene) {
     }
     for (const PunctualLight& light : scene.lights)
         result.emitted += emitted_by(scene, light);
-    if (!(result.area > 0)) return result;
-
-    result.average_reflectivity = reflecting / result.area;
-    for (int c = 0; c < 3; ++c) {
+    // R_ave and I_A are quotients, in which the scene's unit of area cancels.
+    for (int c = 0; c < 3 && result.area > 0; ++c) {
         const double endless = std::numeric_limits<double>::infinity();
+        result.average_reflectivity[c] = reflecting[c] / result.area;
         result.ambient_bleeding[c] = absorbing[c] > 0 ? result.emitted[c] / absorbing[c] : endless;
         result.ambient_colourless[c] = result.average_reflectivity[c] * result.ambient_bleeding[c];
     }
+    result.area *= scene.unit * scene.unit;
+    result.emitted *= scene.unit * scene.unit;
     return result;
 }
 

@@ -39,6 +39,11 @@ double triangle_area(const Scene& scene, uint32_t triangle) {
     return 0.5 * edge_cross(scene, triangle).length();
 }
 
+double diagonal(const Scene& scene) {
+    const Box3f& bounds = scene.bounds;
+    return bounds.isEmpty() ? 0 : scene.unit * (V3d(bounds.max) - V3d(bounds.min)).length();
+}
+
 float edge_product(const V3f& a, const V3f& b, const V3f& c) {
     const V3f e1 = b - a;
     const V3f e2 = c - a;

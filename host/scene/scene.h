@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene model: plain data, in world space but for Scene::origin, as the renderer sees it. Readers fill it, validation checks
-// it, everything else only reads it. Lengths are metres (glTF's unit), radiance W/(sr m^2) per linear RGB
-// channel, angles radians.
+// it, everything else only reads it. Lengths are in Scene::unit: metres (glTF's unit), but in scenes of extreme size.
+// Radiance is W/(sr m^2) per linear RGB channel, angles are radians.
 #pragma once
 
 #include "base/math.h"
@@ -47,7 +47,7 @@ struct Material {
 };
 
 struct Vertex {
-    V3f position;         // world, metres
+    V3f position;
     V3f normal{0, 0, 0};  // unit length, world; (0,0,0) = none: shade flat
     V2f uv{0, 0};         // TEXCOORD_0; v = 0 is the texture's top row
 };
@@ -67,15 +67,16 @@ struct Object {
 
 enum class LightType { point, spot, directional };
 
-// KHR_lights_punctual with photometric units read as radiometric ones: intensity is W/sr per channel for
-// point and spot lights, irradiance W/m^2 on a perpendicular surface for directional ones.
+// KHR_lights_punctual with photometric units read as radiometric ones: intensity is W/sr per channel over unit^2 for
+// point and spot lights, which over a squared distance is W/m^2, and irradiance W/m^2 on a perpendicular surface for
+// directional ones.
 struct PunctualLight {
     std::string name;
     LightType type = LightType::point;
     Rgb intensity{0, 0, 0};
     V3f position{0, 0, 0};    // point, spot
     V3f direction{0, 0, -1};  // unit, the way the light travels: spot, directional
-    float range = 0;          // metres; 0 = unlimited
+    float range = 0;          // 0 = unlimited
     float cos_inner = 1;      // spot: full intensity inside
     float cos_outer = 0;      // spot: nothing outside
 };
@@ -85,7 +86,7 @@ struct Camera {
     bool orthographic = false;
     M44d camera_to_world;       // rigid: looks down -z, +y up; row-vector convention
     double vertical_fov = 0.8;  // perspective: radians, the whole angle
-    double half_height = 1;     // orthographic: metres (ymag)
+    double half_height = 1;     // orthographic (ymag)
     double aspect_ratio = 0;    // width / height that the file wishes for; 0 = any
 };
 
@@ -99,9 +100,10 @@ struct Scene {
     std::vector<PunctualLight> lights;
     std::vector<Camera> cameras;     // at least one: readers add a default that frames the bounds
     uint32_t dropped_triangles = 0;  // zero area, dropped at load with a warning
-    // World position of the zero of all coordinates here (scene/local_frame.h).
+    // Where coordinates here lie in the world, in metres: at origin + unit * coordinate (scene/local_frame.h).
     V3d origin{0, 0, 0};
-    Box3f bounds;  // of all vertices used by triangles; empty without triangles
+    double unit = 1;  // metres, a power of two
+    Box3f bounds;     // of all vertices used by triangles; empty without triangles
 
     const Vertex& corner(uint32_t triangle, int i) const {
         return vertices[triangles[triangle].vertex[static_cast<size_t>(i)]];
@@ -111,10 +113,13 @@ struct Scene {
 // Geometry of one triangle in double, from its float corners.
 // Unit normal of the front side; undefined for zero area, which no scene holds.
 V3d geometric_normal(const Scene& scene, uint32_t triangle);
-double triangle_area(const Scene& scene, uint32_t triangle);  // m^2
+double triangle_area(const Scene& scene, uint32_t triangle);
+
+// Of the bounds, in metres; 0 when they are empty.
+double diagonal(const Scene& scene);
 
 // Largest component of the cross product of two edges, in the arithmetic with which kernels find the normal
-// (kernels/lib/surface.clh). They need a normal float: less is no area, infinity too much of it.
+// (kernels/lib/surface.clh). They need a normal float: less is no area.
 float edge_product(const V3f& a, const V3f& b, const V3f& c);
 
 // Whether the triangle is shaded with its vertex normals: all three are there, and one differs from the

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "scene/scene.h"
 
 #include <algorithm>
 #include <charconv>
@@ -25,16 +26,14 @@ constexpr double ASPECT_TOLERANCE = 0.01;
 // is off by 0.0014 here and in inverse proportion (tests/image/hard_scenes_test.cpp).
 constexpr double SMALLEST_EXACT_SHARE = 1e-4;
 
-double farthest_coordinate(const Box3f& bounds) {
+// m
+double farthest_coordinate(const Scene& scene) {
+    const Box3f& bounds = scene.bounds;
     double farthest = 0;
     for (int axis = 0; axis < 3 && !bounds.isEmpty(); ++axis)
         for (const float coordinate : {bounds.min[axis], bounds.max[axis]})
             farthest = std::max(farthest, std::abs(static_cast<double>(coordinate)));
-    return farthest;
-}
-
-double diagonal(const Box3f& bounds) {
-    return bounds.isEmpty() ? 0 : (V3d(bounds.max) - V3d(bounds.min)).length();
+    return scene.unit * farthest;
 }
 
 }  // namespace
@@ -65,9 +64,9 @@ std::string max_distance_text(const MaxDistance& distance) {
     OBSCURA_CHECK(false, "unit {}", static_cast<int>(distance.unit));
 }
 
-double resolve_max_distance(const MaxDistance& distance, const Box3f& bounds) {
+double resolve_max_distance(const MaxDistance& distance, const Scene& scene) {
     if (distance.unit == MaxDistance::Unit::infinite) return std::numeric_limits<double>::infinity();
-    const double size = diagonal(bounds);
+    const double size = diagonal(scene);
     if (distance.unit == MaxDistance::Unit::percent && size == 0)
         throw InputError("--dmax {}: the scene has no extent to take a share of.",
                          max_distance_text(distance));
@@ -77,7 +76,7 @@ double resolve_max_distance(const MaxDistance& distance, const Box3f& bounds) {
     if (size > 0 && (share < SMALLEST_USUAL_SHARE || share > LARGEST_USUAL_SHARE))
         log_warning("--dmax {} is {:.3g} % of the scene's diagonal of {:.4g} m; 0.5 % to 100 % is usual.",
                     max_distance_text(distance), 100 * share, size);
-    const double farthest = farthest_coordinate(bounds);
+    const double farthest = farthest_coordinate(scene);
     if (metres < SMALLEST_EXACT_SHARE * farthest)
         log_warning(
             "--dmax {} is less than 1e-4 of the scene's farthest coordinate, {:.4g} m: rounding may shift "

@@ -12,6 +12,8 @@
 
 namespace obscura {
 
+struct Scene;
+
 // The falloff rho(t), t = d / d_max in [0, 1). Values are shared with the kernels (shared/frame.h).
 enum class FalloffKind : uint32_t { step = 0, linear, sqrt, cbrt, exp, expjump, pow };
 
@@ -72,8 +74,8 @@ std::string falloff_text(const Falloff& falloff);
 // "1", "50%", "inf". Throws InputError for 0, negative and NaN.
 MaxDistance parse_max_distance(const std::string& text);
 std::string max_distance_text(const MaxDistance& distance);
-// In metres; infinity when unlimited. Warns outside 0.5..100 % of the diagonal.
-double resolve_max_distance(const MaxDistance& distance, const Box3f& bounds);
+// In metres; infinity when unlimited. Warns outside 0.5..100 % of the scene's diagonal.
+double resolve_max_distance(const MaxDistance& distance, const Scene& scene);
 // Warns if the picture is wider or higher than the camera was made for; aspect_ratio: width / height, 0 = any.
 void check_aspect(const RenderSettings& settings, double aspect_ratio);
 

@@ -131,8 +131,12 @@ Frame make_frame(const FrameInput& input, const PixelRect& rect, uint32_t capaci
     frame.lattice = {pixel.x, pixel.y, light.x, light.y};
     frame.lattice_points = {points.x, points.y, 0, 0};
 
-    const double d_max = input.d_max;
-    const bool unlimited = std::isinf(d_max);
+    // What no float holds is as good as nothing or all: the scene measures about one of its units.
+    const bool unlimited = std::isinf(input.d_max);
+    const double d_max =
+        unlimited ? input.d_max
+                  : std::clamp(input.d_max / input.scene.unit, double{std::numeric_limits<float>::min()},
+                               double{std::numeric_limits<float>::max()});
     const Falloff& falloff = settings.falloff;
     const double norm = falloff.kind == FalloffKind::exp ? -std::expm1(-falloff.parameter) : 1;
     frame.obscurance = {static_cast<float>(d_max), unlimited ? 0.0f : static_cast<float>(1 / d_max),
@@ -145,7 +149,7 @@ Frame make_frame(const FrameInput& input, const PixelRect& rect, uint32_t capaci
     frame.ambient = lane(resolve_ambient(input.radiometry, ambient_settings));
     frame.background = lane(V3d(settings.background.value_or(Rgb(0))));
     frame.lights = {input.area_light_count, input.point_light_count, static_cast<uint32_t>(falloff.kind), 0};
-    frame.world_origin = lane(input.scene.origin);
+    frame.world_origin = lane(input.scene.origin, static_cast<float>(input.scene.unit));
     for (uint32_t layer = 0; layer < LAYER_COUNT; ++layer) {
         reinterpret_cast<uint32_t*>(frame.plane)[layer] = input.planes[layer];
     }

@@ -86,7 +86,7 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     RenderResult result;
     const RenderSettings settings = with_default_sky(job.scene, job.settings);
     result.settings = settings;
-    result.d_max = resolve_max_distance(settings.d_max, job.scene.bounds);
+    result.d_max = resolve_max_distance(settings.d_max, job.scene);
     result.radiometry = compute_radiometry(job.scene);
     check_ambient(job.scene, result.radiometry, settings);
     result.needs = analyse_needs(job.scene, settings);

@@ -47,12 +47,12 @@ typedef struct Frame {
     u32x4 seed;            // seed, bits needed to hold spp - 1, max_depth, FRAME_* flags
     u32x4 lattice;         // steps in units of 2^-32: pixel set x, y; light set x, y
     u32x4 lattice_points;  // obscurance set x, y; unused
-    f32x4 obscurance;      // d_max (m or inf), 1 / d_max, falloff parameter, 1 / falloff normalisation
+    f32x4 obscurance;      // d_max (finite or inf), 1 / d_max, falloff parameter, 1 / falloff normalisation
     f32x4 miss;  // rgb: what an open direction contributes to W (R_ave, or 1 without bleeding); w: K as float
     f32x4 ambient;       // rgb: I_A; w: unused
     f32x4 background;    // rgb: radiance of the sky; w: unused
     u32x4 lights;        // emissive triangles, punctual lights, FALLOFF_*, unused
-    f32x4 world_origin;  // xyz: world position of the coordinates' zero, m; w: unused
+    f32x4 world_origin;  // xyz: world position of the coordinates' zero, m; w: their unit, m
     u32x4 plane[4];  // plane of each LAYER_* in path slots and film (NO_PLANE = not kept); [13]: their number
 } Frame;
 

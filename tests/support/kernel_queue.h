@@ -115,7 +115,7 @@ class StageBench {
         frame = make_frame({scene_to_render, settings, compute_radiometry(scene_to_render), needs_, planes,
                             static_cast<uint32_t>(arrays.area_lights.size()),
                             static_cast<uint32_t>(arrays.point_lights.size()),
-                            resolve_max_distance(settings.d_max, scene_to_render.bounds)},
+                            resolve_max_distance(settings.d_max, scene_to_render)},
                            rect, capacity);
         const QueueShape shape = queue_shape(needs_, settings, plane_count(planes));
         plane_count_ = shape.layer_planes;

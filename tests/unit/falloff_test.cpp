@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The falloff functions and the --rho and --dmax settings.
+#include "scene/scene.h"
 #include "scene/settings.h"
 #include "support/errors.h"
 
@@ -81,27 +82,36 @@ TEST(MaxDistance, NoPositiveLengthIsAnError) {
         EXPECT_INPUT_ERROR(parse_max_distance(text), "expected a positive length");
 }
 
+Scene scene_within(const V3f& low, const V3f& high, double unit = 1) {
+    Scene scene;
+    scene.bounds = Box3f(low, high);
+    scene.unit = unit;
+    return scene;
+}
+
 TEST(MaxDistance, PercentIsOfTheDiagonal) {
-    const Box3f bounds(V3f(1, 1, 1), V3f(3, 4, 7));  // diagonal 7
-    EXPECT_DOUBLE_EQ(resolve_max_distance(parse_max_distance("50%"), bounds), 3.5);
-    EXPECT_DOUBLE_EQ(resolve_max_distance(parse_max_distance("2"), bounds), 2);
-    EXPECT_TRUE(std::isinf(resolve_max_distance(parse_max_distance("inf"), bounds)));
-    EXPECT_INPUT_ERROR(resolve_max_distance(parse_max_distance("50%"), Box3f()), "no extent");
+    const Scene scene = scene_within({1, 1, 1}, {3, 4, 7});  // diagonal 7
+    EXPECT_DOUBLE_EQ(resolve_max_distance(parse_max_distance("50%"), scene), 3.5);
+    EXPECT_DOUBLE_EQ(resolve_max_distance(parse_max_distance("2"), scene), 2);
+    EXPECT_TRUE(std::isinf(resolve_max_distance(parse_max_distance("inf"), scene)));
+    EXPECT_INPUT_ERROR(resolve_max_distance(parse_max_distance("50%"), Scene()), "no extent");
+    const Scene huge = scene_within({1, 1, 1}, {3, 4, 7}, 1024);
+    EXPECT_DOUBLE_EQ(resolve_max_distance(parse_max_distance("50%"), huge), 3.5 * 1024);
 }
 
 TEST(MaxDistance, UnusualShareOfTheSceneWarns) {
-    const Box3f bounds(V3f(0, 0, 0), V3f(3, 4, 0));
+    const Scene scene = scene_within({0, 0, 0}, {3, 4, 0});
     for (const auto& [text, warns] :
          {std::pair{"0.01", true}, {"1", false}, {"5", false}, {"6", true}, {"inf", false}}) {
         testing::internal::CaptureStderr();
-        resolve_max_distance(parse_max_distance(text), bounds);
+        resolve_max_distance(parse_max_distance(text), scene);
         const std::string said = testing::internal::GetCapturedStderr();
         EXPECT_EQ(said.find("diagonal") != std::string::npos, warns) << text << ": " << said;
     }
 }
 
 TEST(MaxDistance, ReachBelowTheRoundingOfCoordinatesIsWarnedOf) {
-    const Box3f far(V3f(9000, 0, 0), V3f(9010, 1, 1));
+    const Scene far = scene_within({9000, 0, 0}, {9010, 1, 1});
     const auto said_of = [&](const char* text) {
         testing::internal::CaptureStderr();
         resolve_max_distance(parse_max_distance(text), far);

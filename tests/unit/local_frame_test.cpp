@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes far from the origin are moved near it without changing a bit of their geometry.
+// Scenes far from the origin are moved near it, and tiny and huge ones measured in another unit, without changing a bit
+// of their geometry.
 #include "scene/local_frame.h"
 
 #include "reference/meshes.h"
 #include "scene/gltf.h"
+#include "scene/radiometry.h"
+#include "support/errors.h"
 #include "support/gltf_builder.h"
 #include "support/temporary_folder.h"
 
@@ -42,6 +45,15 @@ TEST(LocalFrame, SceneAroundTheOriginStays) {
     }
 }
 
+TEST(LocalFrame, UnitOfUsualScenesIsTheMetre) {
+    for (const double extent : {0.0, 0x1p-20, 1e-3, 1.0, 1e5, 0x1p20})
+        EXPECT_EQ(scene_unit(extent), 1) << extent;
+    for (const double extent : {0x1p-140, 0x1.8p-60, 0x1.fp-21, 0x1.1p20, 0x1p60, 0x1.8p126}) {
+        EXPECT_GE(extent / scene_unit(extent), 0.5) << extent;
+        EXPECT_LT(extent / scene_unit(extent), 1) << extent;
+    }
+}
+
 TEST(LocalFrame, ReaderMovesAFarScene) {
     const test::TemporaryFolder folder;
     test::GltfBuilder file;
@@ -50,6 +62,68 @@ TEST(LocalFrame, ReaderMovesAFarScene) {
     const Scene scene = load_gltf(file.write_glb(folder.file("far.glb")));
     EXPECT_NEAR(scene.origin.x, 1e6, 1);
     EXPECT_EQ(scene.origin.y, 0);
+}
+
+// A triangle of legs 2^exponent m, seen by an orthographic camera as high and lit from as far.
+Scene scaled_triangle(int exponent) {
+    const double size = std::ldexp(1.0, exponent);
+    const test::TemporaryFolder folder;
+    test::GltfBuilder file;
+    file.add_triangle();
+    file.json["nodes"][0]["scale"] = {size, size, size};
+    file.json["cameras"] = {
+        {{"type", "orthographic"},
+         {"orthographic", {{"xmag", size}, {"ymag", size}, {"znear", 0}, {"zfar", size}}}}};
+    file.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", "point"}, {"intensity", 3 * size * size}, {"range", size}},
+        {{"type", "directional"}, {"intensity", 5}}};
+    file.json["extensionsUsed"] = {"KHR_lights_punctual"};
+    file.append("nodes", {{"camera", 0}, {"translation", {0, 0, size}}});
+    for (const int light : {0, 1})
+        file.append("nodes", {{"translation", {0, 0, size}},
+                              {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
+    return load_gltf(file.write_glb(folder.file("scaled.glb")));
+}
+
+TEST(LocalFrame, ReaderGivesTinyAndHugeScenesAUnitOfTheirOwn) {
+    const Scene usual = scaled_triangle(0);
+    ASSERT_EQ(usual.unit, 1);
+    ASSERT_EQ(usual.triangles.size(), 1u);
+    const Radiometry averages = compute_radiometry(usual);
+    for (const int exponent : {-140, -60, -21, 21, 60, 126}) {
+        SCOPED_TRACE(exponent);
+        const double size = std::ldexp(1.0, exponent);
+        const Scene scene = scaled_triangle(exponent);
+        EXPECT_EQ(scene.unit, 2 * size);
+        EXPECT_EQ(diagonal(scene), size * diagonal(usual));
+        ASSERT_EQ(scene.triangles.size(), 1u);
+        for (size_t i = 0; i < usual.vertices.size(); ++i)
+            EXPECT_EQ(world_position(scene, scene.vertices[i].position),
+                      size * world_position(usual, usual.vertices[i].position));
+        const Camera camera = world_camera(scene, scene.cameras[0]);
+        EXPECT_EQ(camera.half_height, size);
+        EXPECT_EQ(camera.camera_to_world.translation(), V3d(0, 0, size));
+        EXPECT_EQ(world_intensity(scene, scene.lights[0]), RgbD(3 * size * size));
+        EXPECT_EQ(scene.unit * static_cast<double>(scene.lights[0].range), size);
+        EXPECT_EQ(world_position(scene, scene.lights[0].position), V3d(0, 0, size));
+        EXPECT_EQ(world_intensity(scene, scene.lights[1]), RgbD(5));
+        const Radiometry found = compute_radiometry(scene);
+        EXPECT_EQ(found.area, size * size * averages.area);
+        EXPECT_EQ(found.emitted, size * size * averages.emitted);
+        EXPECT_EQ(found.ambient_bleeding, averages.ambient_bleeding);
+    }
+}
+
+// A lamp whose light at the distance of its scene's size is beyond floats.
+TEST(LocalFrame, LampTooBrightForATinySceneIsAnError) {
+    const test::TemporaryFolder folder;
+    test::GltfBuilder file;
+    file.add_triangle();
+    file.json["nodes"][0]["scale"] = {1e-25, 1e-25, 1e-25};
+    file.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 1}}};
+    file.append("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    EXPECT_INPUT_ERROR(load_gltf(file.write_glb(folder.file("bright.glb"))),
+                       "its intensity 1 and color 1 must be finite and not negative");
 }
 
 }  // namespace
