@@ -3,6 +3,7 @@
 #include "scene/material.h"
 #include "support/device.h"
 #include "support/kernel_queue.h"
+#include "support/render.h"
 #include "support/scene_builder.h"
 
 #include <cmath>
@@ -54,7 +55,7 @@ class ShadowStage : public test::DeviceTest {
   protected:
     // Query i has the result index COUNT - 1 - i; two light samples for each of five slots: an exactly full queue.
     test::StageBench bench() {
-        test::StageBench bench(device(), wall_and_panes(), {}, COUNT / 2);
+        test::StageBench bench(device(), wall_and_panes(), test::picture(8, 8), COUNT / 2);
         for (uint32_t i = 0; i < COUNT; ++i) {
             const Query& query = QUERIES[i];
             bench.shadow_rays().at(SHADOW_ORIGIN, i) =
@@ -94,7 +95,7 @@ TEST_F(ShadowStage, SixteenPanesArePassed) {
             builder.quad({0, 0, -static_cast<float>(i)}, {3, 0, 0}, {0, 1, 0}, pane);
         // Behind them all stands a wall, for x in [0, 1].
         builder.quad({0, 0, -20}, {1, 0, 0}, {0, 1, 0}, builder.material(test::matte(Rgb(0.5f))));
-        test::StageBench wave(device(), builder.finish(), {}, 2);
+        test::StageBench wave(device(), builder.finish(), test::picture(8, 8), 2);
         const std::vector<std::pair<V3f, float>> lights{
             {{0, 0, -1}, FAR},    // a sun behind the wall
             {{0, 0, -19}, 1},     // a lamp before it

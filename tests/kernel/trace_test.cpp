@@ -3,6 +3,7 @@
 #include "bvh/layout.h"
 #include "support/device.h"
 #include "support/kernel_queue.h"
+#include "support/render.h"
 #include "support/scene_builder.h"
 
 #include <limits>
@@ -23,7 +24,7 @@ class TraceStage : public test::DeviceTest {
   protected:
     // The first `count` of five rays, in slots that aren't their items.
     test::StageBench traced(uint32_t capacity, uint32_t count) {
-        test::StageBench bench(device(), square(), {}, capacity);
+        test::StageBench bench(device(), square(), test::picture(8, 8), capacity);
         const V3f down(0, 0, -1);
         const V3f origins[] = {
             {0.75f, 0.25f, 2}, {0.25f, 0.75f, 1}, {-1, 0, 1}, {2.25f, 0.25f, 1}, {0.5f, 0.25f, 8}};
@@ -77,7 +78,7 @@ TEST_F(TraceStage, TooSmallStackIsReported) {
         bvh.nodes.push_back(node);
     }
     bvh.blocks.push_back(empty_block());
-    test::StageBench bench(device(), square(), {}, 2);
+    test::StageBench bench(device(), square(), test::picture(8, 8), 2);
     bench.replace_bvh(bvh);
     bench.set_ray(0, 0, {0, 0, 3}, {1, 0, 0});
     bench.set_ray(1, 0, {0, 0, 3}, {0, 0, -1});
