@@ -111,7 +111,7 @@ inline void sample_lights(global const Frame* frame, const Vertex* v, global con
                                        frame->lattice.zw, true);
     }
     for (uint l = 0u; l < count; ++l) {
-        const float2 select = selects ? unit_float2(set_codes(&selections, l)) : (float2)(0.0f);
+        const uint2 select = selects ? set_codes(&selections, l) : (uint2)(0u);
         uint sample = l;
         if (NEED_AREA_LIGHTS) {
             const float2 u = unit_float2(set_codes(&light_points, l));

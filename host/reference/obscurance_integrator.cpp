@@ -110,7 +110,7 @@ void ObscuranceIntegrator::add_lights(const Vertex& vertex, const PathSampler& s
     const SampleSet points = sampler.light_points(depth, Dimension::area_light);
     const V3d& position = vertex.surface.position;
     for (uint32_t l = 0; l < settings_.light_samples; ++l) {
-        const V2d choice = choices[l];
+        const V2d choice = choices.exact(l);
         if (world_.lights.has_area_lights())
             add_light(vertex, world_.lights.sample_area(position, points[l], choice.x), light);
         if (world_.lights.has_punctual_lights())

@@ -106,7 +106,7 @@ RgbD PathIntegrator::light_from_samples(const PathState& path, const Surface& su
     const SampleSet points = sampler.light_points(path.depth, Dimension::area_light);
     RgbD sum(0);
     for (uint32_t l = 0; l < light_samples_; ++l) {
-        const V2d which = choices[l];
+        const V2d which = choices.exact(l);
         const V3d& position = surface.position;
         if (world_.lights.has_area_lights()) {
             sum += reflected_light(surface, bsdf, choice,

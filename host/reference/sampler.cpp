@@ -84,15 +84,24 @@ SamplePlan::SamplePlan(const RenderSettings& settings, uint64_t set_seed)
       obscurance(lattice_steps(spp * obscurance_rays, spp)) {}
 
 V2d SampleSet::operator[](uint32_t j) const {
+    const auto [x, y] = codes(j);
+    return {unit(x), unit(y)};
+}
+
+V2d SampleSet::exact(uint32_t j) const {
+    const auto [x, y] = codes(j);
+    return V2d(x, y) * 0x1p-32;
+}
+
+SampleSet::Codes SampleSet::codes(uint32_t j) const {
     if (permuted_ && count_ > 1) j = permute(j, count_, hash(seed_y_, sample_));
     if (kind_ == SamplerKind::lattice) {
         const uint32_t i = sample_ + stride_ * j;
-        return {unit(i * steps_.x + seed_x_), unit(i * steps_.y + seed_y_)};
+        return {i * steps_.x + seed_x_, i * steps_.y + seed_y_};
     }
     const uint32_t i = sample_ * count_ + j;
-    if (kind_ == SamplerKind::random) return {unit(hash(seed_x_, i)), unit(hash(seed_y_, i))};
-    return {unit(reverse_bits(scramble(i, seed_x_))),
-            unit(reverse_bits(scramble(reverse_bits(sobol(i)), seed_y_)))};
+    if (kind_ == SamplerKind::random) return {hash(seed_x_, i), hash(seed_y_, i)};
+    return {reverse_bits(scramble(i, seed_x_)), reverse_bits(scramble(reverse_bits(sobol(i)), seed_y_))};
 }
 
 PathSampler::PathSampler(const SamplePlan& plan, uint32_t x, uint32_t y, uint32_t sample)

@@ -27,10 +27,18 @@ struct SamplePlan {
 // The points that one camera sample owns in a dimension.
 class SampleSet {
   public:
+    // Point j: 24 bits of each coordinate, as directions and points on lights take them.
     V2d operator[](uint32_t j) const;
+    // All 32 bits: of many things to choose from, each takes a small part of [0, 1).
+    V2d exact(uint32_t j) const;
 
   private:
     friend class PathSampler;
+
+    struct Codes {
+        uint32_t x, y;
+    };
+    Codes codes(uint32_t j) const;
 
     uint32_t seed_x_, seed_y_;
     uint32_t sample_;  // the camera sample, or the one whose place it takes

@@ -4,9 +4,17 @@
 #include "base/error.h"
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace obscura {
+
+namespace {
+
+// Estimates divide by the probability: what is less than a normal float is never selected.
+constexpr double SMALLEST_SHARE = static_cast<double>(std::numeric_limits<float>::min());
+
+}  // namespace
 
 std::vector<AliasEntry> build_alias_table(std::span<const double> weights) {
     const size_t count = weights.size();
@@ -18,8 +26,10 @@ std::vector<AliasEntry> build_alias_table(std::span<const double> weights) {
     std::vector<uint32_t> small, large;
     for (uint32_t i = 0; i < count; ++i) {
         OBSCURA_CHECK(weights[i] >= 0, "weight {} is {}", i, weights[i]);
-        scaled[i] = weights[i] / sum * static_cast<double>(count);
-        table[i] = {1.0f, i, static_cast<float>(weights[i] / sum)};
+        double share = weights[i] / sum;
+        if (share < SMALLEST_SHARE) share = 0;
+        scaled[i] = share * static_cast<double>(count);
+        table[i] = {1.0f, i, static_cast<float>(share)};
         (scaled[i] < 1 ? small : large).push_back(i);
     }
     // Each small column is filled up by a large one. What is left over at the end differs from 1 by rounding only.

@@ -11,7 +11,7 @@ namespace obscura {
 struct AliasEntry {
     float acceptance = 1;   // in [0, 1]: the column's own index below it, the alias above
     uint32_t alias = 0;     // index
-    float probability = 0;  // of this index being selected
+    float probability = 0;  // of this index being selected; 0 or a normal float
 };
 
 // weights: >= 0, finite, not all zero (OBSCURA_CHECK). One entry per weight.

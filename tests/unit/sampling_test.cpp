@@ -67,18 +67,50 @@ TEST(Lattice, LargeSetsAreFoundQuickly) {
     EXPECT_EQ(std::gcd(lattice_generator(1u << 22, 1u << 6), 1u << 22), 1u);
 }
 
+// Probability with which uniform columns and fractions select each index.
+std::vector<double> selection(const std::vector<AliasEntry>& table) {
+    const auto column = 1 / static_cast<double>(table.size());
+    std::vector<double> selected(table.size(), 0);
+    for (size_t i = 0; i < table.size(); ++i) {
+        const auto acceptance = static_cast<double>(table[i].acceptance);
+        selected[i] += acceptance * column;
+        selected[table[i].alias] += (1 - acceptance) * column;
+    }
+    return selected;
+}
+
 TEST(AliasTable, SelectsWithTheGivenProbabilities) {
     const std::vector<double> weights{1, 0, 3, 0.5, 5.5};
     const std::vector<AliasEntry> table = build_alias_table(weights);
-    std::vector<double> selected(weights.size(), 0);
-    for (size_t i = 0; i < table.size(); ++i) {
-        const auto acceptance = static_cast<double>(table[i].acceptance);
-        selected[i] += acceptance / 5;
-        selected[table[i].alias] += (1 - acceptance) / 5;
-    }
+    const std::vector<double> selected = selection(table);
     for (size_t i = 0; i < weights.size(); ++i) {
         EXPECT_NEAR(selected[i], weights[i] / 10, 1e-6);
         EXPECT_FLOAT_EQ(table[i].probability, static_cast<float>(weights[i] / 10));
+    }
+}
+
+// Of 10^5 each third is 0, and one a million times the others.
+TEST(AliasTable, OneInAHundredThousandMayOutweighAllOthers) {
+    for (const size_t bright : {0u, 50'000u, 99'999u}) {
+        std::vector<double> weights(100'000, 1);
+        for (size_t i = 2; i < weights.size(); i += 3)
+            weights[i] = 0;
+        weights[bright] = 1e6;
+        const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+        const std::vector<AliasEntry> table = build_alias_table(weights);
+        const std::vector<double> selected = selection(table);
+        for (size_t i = 0; i < weights.size(); ++i) {
+            ASSERT_NEAR(selected[i], weights[i] / sum, 1e-6 * weights[i] / sum) << i << ", bright " << bright;
+            ASSERT_FLOAT_EQ(table[i].probability, static_cast<float>(weights[i] / sum)) << i;
+        }
+    }
+}
+
+TEST(AliasTable, WhatHasNoInverseInFloatIsNeverSelected) {
+    for (const double tiny : {1e-38, 1e-42, 1e-60, 1e-300}) {
+        const std::vector<AliasEntry> table = build_alias_table(std::vector<double>{tiny, 1, tiny});
+        EXPECT_EQ(selection(table), (std::vector<double>{0, 1, 0})) << tiny;
+        EXPECT_EQ(table[0].probability, 0) << tiny;
     }
 }
 
