@@ -11,6 +11,9 @@ namespace obscura {
 
 namespace {
 
+// Between a camera's up and its view: less is rounding of the transform's product.
+constexpr double SMALLEST_SINE = 1e-12;
+
 // Rigid transform with the given position, looking along -backward, with +y towards up.
 M44d rigid(const V3d& right, const V3d& up, const V3d& backward, const V3d& position) {
     return M44d(right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, backward.x, backward.y, backward.z, 0,
@@ -44,11 +47,13 @@ void append_camera(GltfReader& reader, const tinygltf::Node& node, const std::st
     V3d up, backward;
     to_world.multDirMatrix(V3d(0, 1, 0), up);
     to_world.multDirMatrix(V3d(0, 0, 1), backward);
+    up.normalize();
     backward.normalize();
-    const V3d right = up.cross(backward).normalized();
+    V3d right = up.cross(backward);
     const V3d position = to_world.translation();
-    if (!(right.length() > 0.5) || !std::isfinite(static_cast<float>(position.length())))
-        reader.fail(place, "its node's transform leaves it no direction or position.");
+    if (!(right.length() > SMALLEST_SINE) || !std::isfinite(static_cast<float>(position.length())))
+        reader.fail(node_place, "its transform leaves its camera no direction or position.");
+    right.normalize();
     camera.camera_to_world = rigid(right, backward.cross(right), backward, position);
     reader.scene.cameras.push_back(camera);
 }

@@ -63,7 +63,7 @@ void append_light(GltfReader& reader, const tinygltf::Node& node, const std::str
     light.position = V3f(to_world.translation());
     if (!std::isfinite(light.position.x) || !std::isfinite(light.position.y) ||
         !std::isfinite(light.position.z))
-        reader.fail(place, "its node's transform puts it out of reach.");
+        reader.fail(node_place, "its transform puts its light out of reach.");
     V3d direction;
     to_world.multDirMatrix(V3d(0, 0, -1), direction);
     const double length = direction.length();
@@ -79,7 +79,7 @@ void append_light(GltfReader& reader, const tinygltf::Node& node, const std::str
     }
     if (light.type != LightType::point) {
         if (!(length > 0) || !std::isfinite(length))
-            reader.fail(place, "its node's transform leaves it no direction.");
+            reader.fail(node_place, "its transform leaves its light no direction.");
         light.direction = V3f(direction / length);
     }
     reader.scene.lights.push_back(light);

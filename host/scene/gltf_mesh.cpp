@@ -215,12 +215,15 @@ double mesh_extent(const GltfReader& reader, int mesh_index, const M44d& transfo
     return extent;
 }
 
-void append_mesh(GltfReader& reader, int mesh_index, const M44d& to_world, const std::string& object_name) {
+void append_mesh(GltfReader& reader, int mesh_index, const std::string& node_place, const M44d& to_world,
+                 const std::string& object_name) {
     const tinygltf::Mesh& mesh = reader.model.meshes[static_cast<size_t>(mesh_index)];
     const auto object = static_cast<uint32_t>(reader.scene.objects.size());
     const size_t first = reader.scene.triangles.size();
     for (size_t i = 0; i < mesh.primitives.size(); ++i)
-        append_primitive(reader, mesh.primitives[i], primitive_place(mesh, mesh_index, i), to_world, object);
+        append_primitive(reader, mesh.primitives[i],
+                         fmt::format("{}: {}", node_place, primitive_place(mesh, mesh_index, i)), to_world,
+                         object);
     const size_t last = reader.scene.triangles.size();
     if (last > MOST_VERTICES)
         reader.fail(gltf_place("mesh", mesh.name, static_cast<size_t>(mesh_index)),

@@ -57,6 +57,11 @@ M44d local_matrix(const GltfReader& reader, const std::string& place, const tiny
     return local;
 }
 
+bool is_finite(const M44d& matrix) {
+    const double* const first = matrix.getValue();
+    return std::all_of(first, first + 16, [](double x) { return std::isfinite(x); });
+}
+
 // The roots of the scene to render: the default one, else the first, else every node without a parent.
 std::vector<int> root_nodes(const GltfReader& reader) {
     const tinygltf::Model& model = reader.model;
@@ -92,7 +97,7 @@ void append_node(GltfReader& reader, size_t index, const std::string& place, con
         const std::string name = !node.name.empty()   ? node.name
                                  : !mesh_name.empty() ? mesh_name
                                                       : fmt::format("node {}", index);
-        append_mesh(reader, node.mesh, to_world, name);
+        append_mesh(reader, node.mesh, place, to_world, name);
     }
     if (node.skin >= 0)
         reader.notices.add("skins are not supported; the meshes keep the pose in the file", "node");
@@ -122,6 +127,7 @@ void visit_nodes(const GltfReader& reader, const M44d& root_to_world, const Visi
             reader.fail(place, "it is its own ancestor, or has two parents; nodes must form a tree.");
         seen[index] = true;
         const M44d to_world = local_matrix(reader, place, nodes[index]) * pending.parent_to_world;
+        if (!is_finite(to_world)) reader.fail(place, "its transform overflows, with those above it.");
         visit(index, place, to_world);
         push_reversed(nodes[index].children, to_world);
     }

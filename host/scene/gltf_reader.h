@@ -89,8 +89,10 @@ V3d mean_texel(GltfReader& reader, int texture, const std::string& place, bool s
 // gltf_mesh.cpp: the largest coordinate of a mesh in the space that the transform leads to; 0 without a mesh (-1).
 double mesh_extent(const GltfReader& reader, int mesh, const M44d& transform);
 // to_world, here and below: from the node's space to the scene's, which counts in Scene::unit.
-// Adds a mesh as one object, its vertices transformed to world space.
-void append_mesh(GltfReader& reader, int mesh, const M44d& to_world, const std::string& object_name);
+// Adds a mesh as one object, its vertices transformed to world space. node_place: the node's, which messages name too:
+// its transform may be what is wrong.
+void append_mesh(GltfReader& reader, int mesh, const std::string& node_place, const M44d& to_world,
+                 const std::string& object_name);
 
 // gltf_light.cpp, gltf_camera.cpp: the light or camera that a node carries, if any; place: the node's.
 void append_light(GltfReader& reader, const tinygltf::Node& node, const std::string& place,

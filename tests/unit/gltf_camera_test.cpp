@@ -132,7 +132,7 @@ TEST(Camera, ImpossibleLensIsAnError) {
                                     {"orthographic", {{"xmag", 1}, {"ymag", 0}, {"znear", 0}, {"zfar", 1}}}},
                                    json::object()),
                        "ymag must be positive");
-    EXPECT_INPUT_ERROR(load_camera(PERSPECTIVE, {{"scale", {1, 1, 0}}}), "leaves it no direction");
+    EXPECT_INPUT_ERROR(load_camera(PERSPECTIVE, {{"scale", {1, 1, 0}}}), "leaves its camera no direction");
 }
 
 }  // namespace

@@ -153,7 +153,7 @@ TEST(GltfErrors, VerticesMustBeFinite) {
     const std::vector<float> good{0, 0, 0, 1, 0, 0, 0, 1, 0};
     const std::vector<float> up{0, 0, 1, 0, 0, 1, 0, 0, 1};
     EXPECT_CONTAINS(with_vertices({0, 0, 0, 1, NOT_A_NUMBER, 0, 0, 1, 0}, up, 1),
-                    "test.glb: mesh 'thing' primitive 0: the position of vertex 1 is not finite");
+                    "test.glb: node 0: mesh 'thing' primitive 0: the position of vertex 1 is not finite");
     EXPECT_CONTAINS(with_vertices({0, 0, 0, 1, 0, 0, 0, INFINITE, 0}, up, 1), "the position of vertex 2");
     EXPECT_CONTAINS(with_vertices({0, 0, 0, 3e38f, 0, 0, 0, 1, 0}, up, 10), "the position of vertex 1");
     EXPECT_CONTAINS(with_vertices(good, {0, 0, 1, 0, 0, NOT_A_NUMBER, 0, 0, 1}, 1), "the normal of vertex 1");
@@ -172,11 +172,11 @@ TEST(GltfErrors, LightsAndCamerasMustBeInReach) {
         return std::pair(error_of(light), error_of(camera));
     };
     const auto [light, camera] = at({{"translation", {0, 1e300, 0}}});
-    EXPECT_CONTAINS(light, "light 0: its node's transform puts it out of reach");
-    EXPECT_CONTAINS(camera, "camera 0: its node's transform leaves it no direction or position");
+    EXPECT_CONTAINS(light, "node 1: its transform puts its light out of reach");
+    EXPECT_CONTAINS(camera, "node 1: its transform leaves its camera no direction or position");
     const auto [huge_light, huge_camera] = at({{"scale", {1e300, 1e300, 1e300}}});
-    EXPECT_CONTAINS(huge_light, "light 0: its node's transform leaves it no direction");
-    EXPECT_CONTAINS(huge_camera, "camera 0: its node's transform leaves it no direction or position");
+    EXPECT_CONTAINS(huge_light, "node 1: its transform leaves its light no direction");
+    EXPECT_CONTAINS(huge_camera, "node 1: its transform leaves its camera no direction or position");
     GltfBuilder wide = rich_file();
     wide.json["cameras"][0] = {{"type", "orthographic"},
                                {"orthographic", {{"xmag", 1}, {"ymag", 1e300}, {"znear", 0}, {"zfar", 1}}}};
