@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The obscurance W where float arithmetic is short of digits: contact at a ten-millionth of d_max, scenes far from the
-// world's origin, tiny and huge ones, coarse meshes, the ends of R_ave and d_max.
+// The obscurance W where float arithmetic is short of digits: scenes far from the world's origin, tiny and huge ones,
+// coarse and flattened meshes, the ends of R_ave and d_max.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -30,16 +30,6 @@ RenderSettings point_settings(const Falloff& falloff, double d_max) {
     settings.ambient_light = Rgb(1);
     settings.direct = false;
     return settings;
-}
-
-// The square root is steep where occluders touch: 8 bits of a picture show an error of the distance there.
-TEST_F(HardScenes, SquareRootIsRightAtContact) {
-    for (const double height : {1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2}) {
-        const OracleGeometry plane = enclosure("plane", {}, height);
-        const RenderResult found = render(plane.scene, point_settings(SQRT, 1), {"ao"});
-        const double w = plane.obscurance(SQRT, 1).low;
-        EXPECT_NEAR(estimate(channel(found.image, "ao", 0)).mean, w, 1.0 / 512) << height;
-    }
 }
 
 // A corner of two walls, `reach` metres large, its floor point at (offset, -offset, offset).
