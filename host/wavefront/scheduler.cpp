@@ -25,14 +25,17 @@ bool Scheduler::launches(const StageInfo& stage) const {
     return kernels_[static_cast<uint32_t>(stage.stage)]() != nullptr;
 }
 
+cl::Event Scheduler::launch_stage(const StageInfo& info, const Work& work) const {
+    const cl::Kernel& kernel = kernels_[static_cast<uint32_t>(info.stage)];
+    return launch({device_, kernel, info.name, info.items(work, queues_.shape), local_size_},
+                  stage_arguments(info, scene_, queues_, work));
+}
+
 void Scheduler::run_stages(StageTime time, const Work& work) {
     for (const StageInfo& info : STAGES) {
         if (info.time != time || !launches(info)) continue;
-        const uint64_t items = info.items(work, queues_.shape);
-        const cl::Kernel& kernel = kernels_[static_cast<uint32_t>(info.stage)];
-        const cl::Event event = launch({device_, kernel, info.name, items, local_size_},
-                                       stage_arguments(info, scene_, queues_, work));
-        profiler_.record(std::string(info.row(work.depth)), items, event);
+        const cl::Event event = launch_stage(info, work);
+        profiler_.record(std::string(info.row(work.depth)), info.items(work, queues_.shape), event);
     }
 }
 
@@ -80,8 +83,11 @@ uint32_t Scheduler::run_depth(const Frame& frame, const Work& work) {
     rays_.shadow += status[COUNT_SHADOWS];
     rays_.obscurance += uint64_t{status[COUNT_POINTS]} * queues_.shape.obscurance_rays;
     rays_.glossy += status[COUNT_RAYS];
-    if (observer_)
-        observer_({work.depth, work.count, status[COUNT_SHADOWS], status[COUNT_POINTS]}, frame, queues_);
+    if (observer_) {
+        const auto relaunch = [&](Stage stage) { return launch_stage(stage_info(stage), work); };
+        observer_({work.depth, work.count, status[COUNT_SHADOWS], status[COUNT_POINTS], relaunch}, frame,
+                  queues_);
+    }
     return status[COUNT_RAYS];
 }
 

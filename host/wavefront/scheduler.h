@@ -30,6 +30,8 @@ using WaveCallback = std::function<bool(uint64_t samples_done, const RayCounts& 
 struct DepthView {
     uint32_t depth;
     uint32_t ray_count, shadow_count, point_count;
+    // Launches trace, shadow or obscurance of this depth once more: they only write again what they have written.
+    std::function<cl::Event(Stage)> relaunch;
 };
 // Looks at the queues between two depths, for checks that replay the real work of a render.
 using DepthObserver = std::function<void(const DepthView&, const Frame&, const Queues&)>;
@@ -55,6 +57,7 @@ class Scheduler {
     uint32_t run_depth(const Frame& frame, const Work& work);
     DeviceStatus read_status() const;  // waits for the device; throws DeviceError when a kernel has failed
     bool launches(const StageInfo& stage) const;
+    cl::Event launch_stage(const StageInfo& info, const Work& work) const;
     void run_stages(StageTime time, const Work& work);
 
     Device& device_;
