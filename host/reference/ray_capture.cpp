@@ -4,6 +4,7 @@
 #include "device/launch.h"
 #include "shared/wavefront.h"
 
+#include <algorithm>
 #include <bit>
 #include <limits>
 
@@ -23,6 +24,17 @@ std::vector<f32x4> lane(const Buffer& queue, uint64_t lane, uint64_t capacity, s
     std::vector<f32x4> values(count);
     queue.download(values, lane * capacity);
     return values;
+}
+
+// As trace_rays and visits take them.
+std::vector<f32x4> pack(std::span<const TraceRay> rays) {
+    std::vector<f32x4> lanes;
+    lanes.reserve(2 * rays.size());
+    for (const TraceRay& ray : rays) {
+        lanes.push_back({ray.origin.x, ray.origin.y, ray.origin.z, ray.t_max});
+        lanes.push_back({ray.direction.x, ray.direction.y, ray.direction.z, 0});
+    }
+    return lanes;
 }
 
 }  // namespace
@@ -104,13 +116,7 @@ std::vector<uint8_t> DeviceTracer::occluded(std::span<const TraceRay> rays) cons
 
 std::vector<TraceHit> DeviceTracer::trace(std::span<const TraceRay> rays, bool any_hit) const {
     if (rays.empty()) return {};
-    std::vector<f32x4> lanes;
-    lanes.reserve(2 * rays.size());
-    for (const TraceRay& ray : rays) {
-        lanes.push_back({ray.origin.x, ray.origin.y, ray.origin.z, ray.t_max});
-        lanes.push_back({ray.direction.x, ray.direction.y, ray.direction.z, 0});
-    }
-    const Buffer ray_buffer = Buffer::holding(device_, "rays", "check", lanes);
+    const Buffer ray_buffer = Buffer::holding(device_, "rays", "check", pack(rays));
     const Buffer hit_buffer(device_, "hits", "check", rays.size() * sizeof(f32x4));
     launch(device_, kernel_, "trace_rays", rays.size(), local_size_, nodes_, blocks_, ray_buffer, hit_buffer,
            static_cast<uint32_t>(rays.size()), any_hit ? 1u : 0u);
@@ -119,6 +125,34 @@ std::vector<TraceHit> DeviceTracer::trace(std::span<const TraceRay> rays, bool a
     for (const f32x4& lane : hit_buffer.contents<f32x4>())
         hits.push_back(hit_of(lane));
     return hits;
+}
+
+void Visits::add(const Visits& other) {
+    rays += other.rays;
+    hits += other.hits;
+    nodes += other.nodes;
+    blocks += other.blocks;
+    stack_entries = std::max(stack_entries, other.stack_entries);
+}
+
+VisitCounter::VisitCounter(Device& device, ProgramLibrary& library, const Bvh& bvh,
+                           const std::string& options)
+    : device_(device),
+      local_size_(library.local_size()),
+      nodes_(Buffer::holding(device, "nodes", "check", bvh.nodes)),
+      blocks_(Buffer::holding(device, "blocks", "check", bvh.blocks)),
+      kernel_(library.kernel("visits", options)) {}
+
+Visits VisitCounter::count(std::span<const TraceRay> rays, bool any_hit) const {
+    Visits sum;
+    if (rays.empty()) return sum;
+    const Buffer ray_buffer = Buffer::holding(device_, "rays", "check", pack(rays));
+    const Buffer count_buffer(device_, "visits", "check", rays.size() * sizeof(u32x4));
+    launch(device_, kernel_, "visits", rays.size(), local_size_, nodes_, blocks_, ray_buffer, count_buffer,
+           static_cast<uint32_t>(rays.size()), any_hit ? 1u : 0u);
+    for (const u32x4& one : count_buffer.contents<u32x4>())
+        sum.add({1, one.w, one.x, one.y, one.z});
+    return sum;
 }
 
 }  // namespace obscura

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The device's rays and hits, brought to the host: the real ones of a render (RayCapture looks at its queues between two
-// depths), and those of any rays (DeviceTracer). Obscurance rays are never stored by a render, so a kernel of its own
+// depths), and those of any rays (DeviceTracer), with what they cost (VisitCounter). Obscurance rays are never stored by a render, so a kernel of its own
 // makes them again with the very functions of the stage.
 #pragma once
 
@@ -39,6 +39,29 @@ class RayCapture {
     Device& device_;
     uint32_t local_size_;
     Buffer nodes_, blocks_, out_;
+    cl::Kernel kernel_;
+};
+
+// What traversals visit, summed up.
+struct Visits {
+    uint64_t rays = 0, hits = 0, nodes = 0, blocks = 0;
+    uint32_t stack_entries = 0;  // the most that any ray needed
+
+    void add(const Visits& other);
+};
+
+// The device's traversal in a build that counts what it visits.
+class VisitCounter {
+  public:
+    VisitCounter(Device& device, ProgramLibrary& library, const Bvh& bvh, const std::string& options = {});
+
+    // any_hit: until something is hit, not the nearest.
+    Visits count(std::span<const TraceRay> rays, bool any_hit) const;
+
+  private:
+    Device& device_;
+    uint32_t local_size_;
+    Buffer nodes_, blocks_;
     cl::Kernel kernel_;
 };
 
