@@ -2,12 +2,12 @@
 #include "wavefront/render.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <future>
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/stopwatch.h"
 #include "base/units.h"
 #include "bvh/bvh.h"
 #include "film/develop.h"
@@ -18,15 +18,6 @@
 
 namespace obscura {
 namespace {
-
-class Stopwatch {
-  public:
-    double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
-  private:
-    using Clock = std::chrono::steady_clock;
-    Clock::time_point start_ = Clock::now();
-};
 
 StageKernels prepare_kernels(ProgramLibrary& library, const Needs& needs, const RenderJob& job) {
     const bool all = job.settings.needs == NeedsMode::all;

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene's triangles as an Embree scene of the highest build quality, and what it cost to build.
+#pragma once
+
+#include "scene/scene.h"
+
+#include <embree3/rtcore.h>
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace obscura {
+
+class EmbreeScene {
+  public:
+    // Copies what it needs. robust: watertight intersection, as ours is; else Embree's quickest.
+    explicit EmbreeScene(const Scene& scene, bool robust = true);
+    ~EmbreeScene();
+    EmbreeScene(const EmbreeScene&) = delete;
+    EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+    RTCScene handle() const { return scene_; }
+    double build_seconds() const { return build_seconds_; }
+    // Of its BVH, as Embree reports its memory: without vertices and indices, which it shares with this object.
+    uint64_t bytes() const { return static_cast<uint64_t>(bytes_.load()); }
+
+    // Where rays start: Embree's ends are inclusive, ours starts at 0 exclusive. Without denormals t > 0 is the same.
+    static constexpr float T_NEAR = std::numeric_limits<float>::min();
+
+  private:
+    std::vector<V3f> positions_;
+    std::vector<std::array<uint32_t, 3>> indices_;
+    std::atomic<int64_t> bytes_ = 0;
+    RTCDevice device_ = nullptr;
+    RTCScene scene_ = nullptr;
+    double build_seconds_ = 0;
+};
+
+}  // namespace obscura
