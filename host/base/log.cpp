@@ -30,6 +30,14 @@ bool is_quiet() {
     return quiet_;
 }
 
+MutedWarnings::MutedWarnings() {
+    logger().set_level(spdlog::level::err);
+}
+
+MutedWarnings::~MutedWarnings() {
+    set_quiet(quiet_);
+}
+
 void log_info(const std::string& message) {
     // Information is printed plain: colour is for what needs attention.
     if (!quiet_) fmt::print(stderr, "{}\n", message);

@@ -18,6 +18,15 @@ void log_info(const std::string& message);
 void log_warning(const std::string& message);
 void log_error(const std::string& message);
 
+// While it lives no warning is printed: for work that is done again, and has been warned of.
+class MutedWarnings {
+  public:
+    MutedWarnings();
+    ~MutedWarnings();
+    MutedWarnings(const MutedWarnings&) = delete;
+    MutedWarnings& operator=(const MutedWarnings&) = delete;
+};
+
 template <typename... Args>
 void log_info(fmt::format_string<Args...> format, Args&&... args) {
     log_info(fmt::format(format, std::forward<Args>(args)...));

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "cli/bench.h"
 #include "cli/check.h"
 #include "cli/compare.h"
 #include "cli/devices.h"
@@ -26,6 +27,7 @@ ExitCode run(int argc, char** argv) {
     app.set_version_flag("--version", "obscura " OBSCURA_VERSION);
     app.require_subcommand(1);
     ExitCode exit_code = ExitCode::ok;
+    add_bench_command(app, exit_code);
     add_check_command(app, exit_code);
     add_compare_command(app, exit_code);
     add_devices_command(app, exit_code);
