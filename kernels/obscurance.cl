@@ -4,18 +4,18 @@
 //   Reads    point i, guarded by the device's own count; its K directions from the sampler
 //   Writes   results[slot * K + k]: R(Q) rho(d) or, for an open direction, R_ave; w: the same without colours
 // d is measured from the point itself, not from the ray's offset origin, and a hit counts only if d < d_max.
-// One work-item traces the K rays of a point: they share its basis and the hashes of its sampler.
 #include "lib/falloff.clh"
 #include "lib/obscurance_ray.clh"
 #include "lib/pane.clh"
 #include "lib/status.clh"
+#include "lib/stream.clh"
 
-// What the ray from position + start brings back: rgb with colours, w without.
+// What the ray from position + start brings back, whose nearest hit is known: rgb with colours, w without.
 inline float4 trace_obscurance(global const Frame* frame, global const BvhNode* nodes,
                                global const TriangleBlock* blocks, global const SceneTriangle* triangles,
                                global const SceneMaterial* materials, global const uchar4* texels,
                                global const float* tables, float3 position, float3 start, float3 direction,
-                               bool* overflow) {
+                               Hit hit, bool* overflow) {
     const float d_max = frame->obscurance.x;
     const bool bleeding = (frame->seed.w & FRAME_BLEEDING) != 0u;
     const bool any_hit = !NEED_NEAREST_OCCLUDER;
@@ -24,8 +24,6 @@ inline float4 trace_obscurance(global const Frame* frame, global const BvhNode* 
     float w_colourless = 0.0f;
     bool open = true;
     for (int segment = 0; open && segment < MAX_SEGMENTS; ++segment) {
-        const Hit hit = traverse(nodes, blocks, position + start, direction,
-                                 distance_limit(start, direction, d_max), any_hit);
         if (isnan(hit.t)) *overflow = true;
         if (hit.primitive == NO_PRIMITIVE) break;
         const float t = length(start + hit.t * direction) * frame->obscurance.y;
@@ -44,6 +42,8 @@ inline float4 trace_obscurance(global const Frame* frame, global const BvhNode* 
                 blocked = through * (1.0f - passed);
                 through *= passed;
                 start = (pane.position - pane.offset * pane.n_geo) - position;
+                hit = traverse(nodes, blocks, position + start, direction,
+                               distance_limit(start, direction, d_max), any_hit);
                 open = true;
             }
         }
@@ -62,21 +62,20 @@ kernel void obscurance(global const Frame* frame, global const BvhNode* nodes,
                        global const SceneMaterial* materials, global const uchar4* texels,
                        global const float* tables, global const float4* points, global const float4* paths,
                        global float4* results, global uint* counters, uint depth) {
-    const uint i = (uint)get_global_id(0);
-    if (i >= counters[COUNT_POINTS]) return;
-    const uint slot = as_uint(points[POINT_POSITION * frame->crop.w + i].w);
-    if (!check_slot(counters, slot, frame->crop.w, STAGE_OBSCURANCE, i)) return;
-    const ObscurancePoint point = load_obscurance_point(frame, points, paths, i, depth);
-    const uint k_count = frame->sampling.y;
-    global float4* point_results = results + (size_t)point.slot * k_count;
-    Directions directions;
-    bool overflow = false;
-    for (uint k = 0u; k < k_count; ++k) {
-        const uint lane = k % DIRECTION_BATCH;
-        if (lane == 0u) obscurance_directions(&point, k, &directions);
-        const float3 direction = (float3)(directions.x[lane], directions.y[lane], directions.z[lane]);
-        point_results[k] = trace_obscurance(frame, nodes, blocks, triangles, materials, texels, tables,
-                                            point.position, point.start, direction, &overflow);
+    const Share share = share_of_group(counters[COUNT_POINTS]);
+    RayStream stream;
+    RayOwners owners;
+    for (uint next = 0u; next < direction_batches(frame, share);) {
+        next = gather_obscurance_rays(frame, points, paths, counters, share, next, depth, &stream, &owners);
+        trace_stream(nodes, blocks, &stream, !NEED_NEAREST_OCCLUDER);
+        for (uint ray = 0u; ray < stream.count; ++ray) {
+            const uint i = owners.point[ray];
+            bool overflow = false;
+            results[owners.result[ray]] =
+                trace_obscurance(frame, nodes, blocks, triangles, materials, texels, tables,
+                                 points[POINT_POSITION * frame->crop.w + i].xyz, ray_start(frame, points, i),
+                                 stream.directions[ray], stream.hits[ray], &overflow);
+            if (overflow) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_OBSCURANCE, i);
+        }
     }
-    if (overflow) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_OBSCURANCE, i);
 }

@@ -5,19 +5,19 @@
 #include "lib/layers.clh"
 #include "lib/pane.clh"
 #include "lib/status.clh"
+#include "lib/stream.clh"
 
 // Share of light that reaches the origin, per channel: the product over the panes in between, 0 at the first opaque
-// surface.
+// surface. hit: the first surface on the way.
 inline float3 transmittance(global const BvhNode* nodes, global const TriangleBlock* blocks,
                             global const SceneTriangle* triangles, global const SceneMaterial* materials,
                             global const uchar4* texels, global const float* tables, float3 origin,
-                            float3 direction, float t_light, bool* overflow) {
+                            float3 direction, float t_light, Hit hit, bool* overflow) {
     const bool any_hit = !NEED_TRANSMISSION;
     const float3 unit = normalize(direction);
     const float3 target = origin + direction;
     float3 result = (float3)(1.0f);
     for (int segment = 0; segment < MAX_SEGMENTS; ++segment) {
-        const Hit hit = traverse(nodes, blocks, origin, direction, t_light, any_hit);
         *overflow = isnan(hit.t);
         if (hit.primitive == NO_PRIMITIVE) return result;
         if (any_hit || *overflow) return (float3)(0.0f);
@@ -29,6 +29,7 @@ inline float3 transmittance(global const BvhNode* nodes, global const TriangleBl
                                      -dot(unit, s.n_geo));
         origin = s.position - s.offset * s.n_geo;
         if (t_light == 1.0f) direction = target - origin;
+        hit = traverse(nodes, blocks, origin, direction, t_light, any_hit);
     }
     return (float3)(0.0f);
 }
@@ -37,16 +38,28 @@ kernel void shadow(global const Frame* frame, global const BvhNode* nodes, globa
                    global const SceneTriangle* triangles, global const SceneMaterial* materials,
                    global const uchar4* texels, global const float* tables, global const float4* shadow_rays,
                    global float4* visibility, global uint* counters) {
-    const uint i = (uint)get_global_id(0);
-    if (i >= counters[COUNT_SHADOWS]) return;
+    const Share share = share_of_group(counters[COUNT_SHADOWS]);
     const uint capacity = frame->crop.w * light_sample_count(frame);
-    const float4 origin = shadow_rays[SHADOW_ORIGIN * capacity + i];
-    const float4 direction = shadow_rays[SHADOW_DIRECTION * capacity + i];
-    const uint result = as_uint(origin.w);
-    if (!check_slot(counters, result, capacity, STAGE_SHADOW, i)) return;
-    bool overflow;
-    const float3 passed = transmittance(nodes, blocks, triangles, materials, texels, tables, origin.xyz,
-                                        direction.xyz, direction.w, &overflow);
-    if (overflow) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_SHADOW, i);
-    visibility[result] = (float4)(passed, 0.0f);
+    RayStream stream;
+    for (uint first = share.first; first < share.last; first += stream.count) {
+        stream.count = 0u;
+        const uint last = min(first + STREAM_RAYS, share.last);
+        for (uint i = first; i < last; ++i) {
+            const float4 direction = shadow_rays[SHADOW_DIRECTION * capacity + i];
+            add_ray(&stream, shadow_rays[SHADOW_ORIGIN * capacity + i].xyz, direction.xyz, direction.w);
+        }
+        trace_stream(nodes, blocks, &stream, !NEED_TRANSMISSION);
+        for (uint i = first; i < last; ++i) {
+            const float4 origin = shadow_rays[SHADOW_ORIGIN * capacity + i];
+            const uint result = as_uint(origin.w);
+            if (!check_slot(counters, result, capacity, STAGE_SHADOW, i)) continue;
+            const uint ray = i - first;
+            bool overflow;
+            const float3 passed =
+                transmittance(nodes, blocks, triangles, materials, texels, tables, origin.xyz,
+                              stream.directions[ray], stream.t_max[ray], stream.hits[ray], &overflow);
+            if (overflow) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_SHADOW, i);
+            visibility[result] = (float4)(passed, 0.0f);
+        }
+    }
 }

@@ -3,17 +3,26 @@
 //   Reads    ray i
 //   Writes   hit i, in the ray's own lane
 #include "lib/status.clh"
-#include "lib/traverse.clh"
+#include "lib/stream.clh"
 #include "shared/frame.h"
 
 kernel void trace(global const Frame* frame, global const BvhNode* nodes, global const TriangleBlock* blocks,
                   global float4* rays, global uint* counters, uint count) {
-    const uint i = (uint)get_global_id(0);
-    if (i >= count) return;
+    const Share share = share_of_group(count);
     const uint capacity = frame->crop.w;
-    const float3 origin = rays[RAY_ORIGIN * capacity + i].xyz;
-    const float3 direction = rays[RAY_DIRECTION * capacity + i].xyz;
-    const Hit hit = traverse(nodes, blocks, origin, direction, INFINITY, false);
-    if (isnan(hit.t)) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_TRACE, i);
-    rays[RAY_HIT * capacity + i] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
+    RayStream stream;
+    for (uint first = share.first; first < share.last; first += stream.count) {
+        stream.count = 0u;
+        const uint last = min(first + STREAM_RAYS, share.last);
+        for (uint i = first; i < last; ++i) {
+            add_ray(&stream, rays[RAY_ORIGIN * capacity + i].xyz, rays[RAY_DIRECTION * capacity + i].xyz,
+                    INFINITY);
+        }
+        trace_stream(nodes, blocks, &stream, false);
+        for (uint i = first; i < last; ++i) {
+            const Hit hit = stream.hits[i - first];
+            if (isnan(hit.t)) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_TRACE, i);
+            rays[RAY_HIT * capacity + i] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
+        }
+    }
 }

@@ -2,21 +2,25 @@
 // What a ray costs: the production traversal, built so that it counts its visits. For `obscura bench`, which never times
 // this kernel.
 #define COUNT_VISITS
-#include "lib/traverse.clh"
+#include "lib/stream.clh"
 
 // rays: origin with t_max, direction. any_hit: 1 = whether anything is hit, 0 = the nearest hit. Of each ray
 //   counts  nodes, blocks, the most entries on its stack, 1 if it hit something
 kernel void visits(global const BvhNode* nodes, global const TriangleBlock* blocks, global const float4* rays,
                    global uint4* counts, uint count, uint any_hit) {
-    const uint i = (uint)get_global_id(0);
-    if (i >= count) return;
-    const float4 origin = rays[2u * i];
-    const float3 direction = rays[2u * i + 1u].xyz;
-    Hit hit;
-    if (any_hit != 0u) {
-        hit = traverse(nodes, blocks, origin.xyz, direction, origin.w, true);
-    } else {
-        hit = traverse(nodes, blocks, origin.xyz, direction, origin.w, false);
+    const Share share = share_of_group(count);
+    RayStream stream;
+    for (uint first = share.first; first < share.last; first += stream.count) {
+        add_packed_rays(&stream, rays, first, share.last);
+        if (any_hit != 0u) {
+            trace_stream(nodes, blocks, &stream, true);
+        } else {
+            trace_stream(nodes, blocks, &stream, false);
+        }
+        for (uint ray = 0u; ray < stream.count; ++ray) {
+            const Hit hit = stream.hits[ray];
+            const uint found = hit.primitive != NO_PRIMITIVE ? 1u : 0u;
+            counts[first + ray] = (uint4)(hit.nodes, hit.blocks, hit.entries, found);
+        }
     }
-    counts[i] = (uint4)(hit.nodes, hit.blocks, hit.entries, hit.primitive != NO_PRIMITIVE ? 1u : 0u);
 }

@@ -193,7 +193,7 @@ void add_device_options(CLI::App& command, RenderOptions& o) {
         ->group(WORK_GROUP);
     command
         .add_flag("--portable-kernels", o.portable,
-                  "Use no instruction of one processor; the same pictures, slower")
+                  "One ray per work item, no instruction of one processor; the same pictures, slower on CPUs")
         ->group(WORK_GROUP);
 }
 

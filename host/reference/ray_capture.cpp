@@ -83,8 +83,8 @@ CapturedRays RayCapture::obscurance(const DepthView& view, const Frame& frame, c
     if (count == 0) return captured;
     const uint64_t bytes = LANES * count * sizeof(f32x4);
     if (out_.bytes() < bytes) out_ = Buffer(device_, "obscurance rays", "check", bytes);
-    launch(device_, kernel_, "obscurance_rays", count, local_size_, queues.frame, nodes_, blocks_,
-           queues.points, queues.paths, out_, count, view.depth);
+    launch(device_, kernel_, "obscurance_rays", view.point_count, local_size_, queues.frame, nodes_, blocks_,
+           queues.points, queues.paths, queues.counters, out_, view.point_count, view.depth);
     const std::vector<f32x4> origins = lane(out_, 0, count, count);
     const std::vector<f32x4> directions = lane(out_, 1, count, count);
     const std::vector<f32x4> hits = lane(out_, 2, count, count);

@@ -10,7 +10,8 @@
 namespace obscura {
 
 // Build options of a stage's kernel: "-D NEED_X=1" for each feature that it depends on and the scene needs.
-// all: --needs all, which compiles every falloff too. portable: without intrinsics of one processor.
+// all: --needs all, which compiles every falloff too. portable: without intrinsics of one processor
+// or streams of rays.
 std::string stage_options(Stage stage, const Needs& needs, bool all, bool portable);
 
 }  // namespace obscura

@@ -13,18 +13,20 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # What goes wrong, the cases of the self-test that show it, the file, its text and what replaces that.
 MUTANTS = [
-    ("the last triangle of each block is dropped", "triangle soup", "lib/traverse.clh", "inside & (det != 0.0f));", "inside & (det != 0.0f)) & 7u;"),
-    ("< for <= at edges", "inside, edges", "lib/traverse.clh", "(least >= 0.0f) | (most <= 0.0f)", "(least > 0.0f) | (most < 0.0f)"),
-    ("no slab padding", "inside", "lib/traverse.clh", "(1.0f + 2.0f * GAMMA(9))", "1.0f"),
-    ("swapped children", "triangle soup", "lib/traverse.clh", "child = children[lane];", "child = children[lane ^ 1u];"),
-    ("the next primitive", "triangle soup", "lib/traverse.clh", "hit->primitive = primitive;", "hit->primitive = primitive ^ 1u;"),
-    ("distances too long by 1e-5", "triangle soup", "lib/traverse.clh", "hit->t = ts[lane];", "hit->t = 1.00001f * ts[lane];"),
-    ("weights of other corners", "triangle soup", "lib/traverse.clh", "hit->u = vs[lane];", "hit->u = ws[lane];"),
+    ("the last triangle of each block is dropped", "triangle soup", "lib/intersect.clh", "inside & (det != 0.0f));", "inside & (det != 0.0f)) & 7u;"),
+    ("< for <= at edges", "inside, edges", "lib/intersect.clh", "(least >= 0.0f) | (most <= 0.0f)", "(least > 0.0f) | (most < 0.0f)"),
+    ("no slab padding", "inside", "lib/intersect.clh", "(1.0f + 2.0f * GAMMA(9))", "1.0f"),
+    ("swapped children", "triangle soup", "lib/stream.clh", "stack_child[top] = children[other];", "stack_child[top] = children[nearest];"),
+    ("rays that follow another child", "triangle soup", "lib/stream.clh", "(uint)masks[i] >> lane", "(uint)masks[i] >> (lane ^ 1u)"),
+    ("rays given up too early", "triangle soup", "lib/stream.clh", "limit >= start ?", "limit >= 1.5f * start ?"),
+    ("the next primitive", "triangle soup", "lib/intersect.clh", "hit->primitive = primitive;", "hit->primitive = primitive ^ 1u;"),
+    ("distances too long by 1e-5", "triangle soup", "lib/intersect.clh", "hit->t = ts[lane];", "hit->t = 1.00001f * ts[lane];"),
+    ("weights of other corners", "triangle soup", "lib/intersect.clh", "hit->u = vs[lane];", "hit->u = ws[lane];"),
     ("d from the offset origin", "room", "obscurance.cl", "length(start + hit.t * direction)", "length(hit.t * direction)"),
     ("rho for another d_max", "room", "obscurance.cl", "* frame->obscurance.y;", "* (1.001f * frame->obscurance.y);"),
     ("rays beyond d_max", "room", "lib/obscurance_ray.clh", "sqrt(fmax(0.0f, d_max * d_max - across2)) - along", "2.0f * d_max"),
     ("colours from the wrong corner", "room", "obscurance.cl", "texels, tables, hit.u, hit.v)", "texels, tables, hit.v, hit.u)"),
-    ("shadow rays that stop half-way", "room", "shadow.cl", "direction, t_light, any_hit);", "direction, 0.5f * t_light, any_hit);"),
+    ("shadow rays that stop half-way", "room", "shadow.cl", "direction.xyz, direction.w);", "direction.xyz, 0.5f * direction.w);"),
     ("panes that dim too little", "room", "lib/pane.clh", "(1.0f - pane_reflectance(cosine))", "(1.0f - 0.99f * pane_reflectance(cosine))"),
 ]
 

@@ -77,14 +77,14 @@ double flat_share(const Bvh& bvh) {
     return static_cast<double>(flat) / static_cast<double>(all);
 }
 
-// The kernels' sources with one expression of the traversal replaced.
+// The kernels' sources with one expression of the box test replaced.
 class ChangedTraversal {
   public:
     ChangedTraversal(const std::string& expression, const std::string& replacement)
         : use_("OBSCURA_KERNEL_DIR", folder_.path().string()) {
         namespace fs = std::filesystem;
         fs::copy(fs::path(OBSCURA_SOURCE_DIR) / "kernels", folder_.path(), fs::copy_options::recursive);
-        const fs::path file = folder_.path() / "lib" / "traverse.clh";
+        const fs::path file = folder_.path() / "lib" / "intersect.clh";
         std::string text;
         {
             std::ifstream in(file);

@@ -37,10 +37,10 @@ MISUSES = {
 
 # What goes wrong, the file, its text, what replaces that, and what Oclgrind calls it.
 MUTANTS = [
-    ("points share their results", "obscurance.cl", "results + (size_t)point.slot * k_count;", "results;", "data race"),
-    ("a miss has no weights", "lib/traverse.clh", "    hit.u = 0.0f;\n", "", "Uninitialized value"),
-    ("results lie behind their buffer", "obscurance.cl", "results + (size_t)point.slot * k_count;",
-     "results + (size_t)(point.slot + frame->crop.w) * k_count;", "Invalid write"),
+    ("points share their results", "lib/obscurance_ray.clh", "= slot * k_count + first_k", "= first_k", "data race"),
+    ("a miss has no weights", "lib/stream.clh", "        stream->hits[i].u = 0.0f;\n", "", "Uninitialized value"),
+    ("results lie behind their buffer", "lib/obscurance_ray.clh", "= slot * k_count + first_k",
+     "= (slot + frame->crop.w) * k_count + first_k", "Invalid write"),
 ]
 
 # On standard error: a misuse of the API with its code, and what obscura says itself.
