@@ -181,6 +181,7 @@ void append_primitive(GltfReader& reader, const tinygltf::Primitive& primitive, 
             corners[k] = vertices.use_vertex(indices ? indices->index(at) : static_cast<uint32_t>(at));
         }
         if (vertices.mirrored()) std::swap(corners[1], corners[2]);
+        reader.lengths.add(reader.scene, corners);
         if (has_area(reader.scene.vertices, corners))
             reader.scene.triangles.push_back({corners, material, object});
         else
@@ -194,26 +195,6 @@ std::string primitive_place(const tinygltf::Mesh& mesh, int mesh_index, size_t p
 }
 
 }  // namespace
-
-double mesh_extent(const GltfReader& reader, int mesh_index, const M44d& transform) {
-    if (mesh_index < 0) return 0;
-    const tinygltf::Mesh& mesh = reader.model.meshes[static_cast<size_t>(mesh_index)];
-    double extent = 0;
-    for (size_t p = 0; p < mesh.primitives.size(); ++p) {
-        const auto found = mesh.primitives[p].attributes.find("POSITION");
-        if (found == mesh.primitives[p].attributes.end()) continue;
-        const AccessorView positions(reader, found->second,
-                                     primitive_place(mesh, mesh_index, p) + ": POSITION");
-        if (positions.components() != 3) continue;  // append_mesh tells of it
-        for (size_t i = 0; i < positions.count(); ++i) {
-            const V3d local(positions.value(i, 0), positions.value(i, 1), positions.value(i, 2));
-            const V3d placed = local * transform;
-            for (int axis = 0; axis < 3; ++axis)
-                if (std::isfinite(placed[axis])) extent = std::max(extent, std::abs(placed[axis]));
-        }
-    }
-    return extent;
-}
 
 void append_mesh(GltfReader& reader, int mesh_index, const std::string& node_place, const M44d& to_world,
                  const std::string& object_name) {

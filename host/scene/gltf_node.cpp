@@ -82,17 +82,12 @@ std::vector<int> root_nodes(const GltfReader& reader) {
     return roots;
 }
 
-// Index of the mesh that the node carries, -1 for none.
-int node_mesh(const GltfReader& reader, size_t index, const std::string& place) {
-    const int mesh = reader.model.nodes[index].mesh;
-    if (mesh >= 0 && static_cast<size_t>(mesh) >= reader.model.meshes.size())
-        reader.fail(place, "mesh {} does not exist; the file has {}.", mesh, reader.model.meshes.size());
-    return mesh;
-}
-
-void append_node(GltfReader& reader, size_t index, const std::string& place, const M44d& to_world) {
+void append_object(GltfReader& reader, size_t index, const std::string& place, const M44d& to_world) {
     const tinygltf::Node& node = reader.model.nodes[index];
-    if (node_mesh(reader, index, place) >= 0) {
+    if (node.mesh >= 0) {
+        if (static_cast<size_t>(node.mesh) >= reader.model.meshes.size())
+            reader.fail(place, "mesh {} does not exist; the file has {}.", node.mesh,
+                        reader.model.meshes.size());
         const std::string& mesh_name = reader.model.meshes[static_cast<size_t>(node.mesh)].name;
         const std::string name = !node.name.empty()   ? node.name
                                  : !mesh_name.empty() ? mesh_name
@@ -101,8 +96,6 @@ void append_node(GltfReader& reader, size_t index, const std::string& place, con
     }
     if (node.skin >= 0)
         reader.notices.add("skins are not supported; the meshes keep the pose in the file", "node");
-    append_camera(reader, node, place, to_world);
-    append_light(reader, node, place, to_world);
 }
 
 // Calls visit(index, place, to_world) for each node of the scene to render, parents before children.
@@ -140,14 +133,27 @@ void append_nodes(GltfReader& reader) {
         reader.notices.add("only the default scene is rendered; others are ignored", "other scene");
     for (size_t i = 0; i < reader.model.animations.size(); ++i)
         reader.notices.add("animations are not played; nodes keep their place in the file", "animation");
-    double extent = 0;
-    visit_nodes(reader, M44d(), [&](size_t index, const std::string& place, const M44d& to_world) {
-        extent = std::max(extent, mesh_extent(reader, node_mesh(reader, index, place), to_world));
-    });
-    reader.scene.unit = scene_unit(extent);
+    const auto append_meshes = [&] {
+        visit_nodes(reader, M44d().setScale(1 / reader.scene.unit),
+                    [&](size_t index, const std::string& place, const M44d& to_world) {
+                        append_object(reader, index, place, to_world);
+                    });
+    };
+    const Notices before = reader.notices;
+    append_meshes();
+    reader.scene.unit = scene_unit(reader.lengths);
+    if (reader.scene.unit != 1) {  // once more, from the file's numbers
+        reader.notices = before;
+        reader.scene.vertices.clear();
+        reader.scene.triangles.clear();
+        reader.scene.objects.clear();
+        reader.scene.dropped_triangles = 0;
+        append_meshes();
+    }
     visit_nodes(reader, M44d().setScale(1 / reader.scene.unit),
                 [&](size_t index, const std::string& place, const M44d& to_world) {
-                    append_node(reader, index, place, to_world);
+                    append_camera(reader, reader.model.nodes[index], place, to_world);
+                    append_light(reader, reader.model.nodes[index], place, to_world);
                 });
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "scene/local_frame.h"
 #include "scene/scene.h"
 
 #include <tiny_gltf.h>
@@ -38,6 +39,7 @@ struct GltfReader {
     tinygltf::Model model;
     Notices notices;
     Scene scene;
+    LengthRange lengths;                          // of the triangles read so far
     std::unordered_map<int, uint32_t> materials;  // glTF index (-1: the default) -> Scene::materials
     std::unordered_map<int, int32_t> textures;    // glTF index -> Scene::textures
 
@@ -86,10 +88,8 @@ int32_t use_texture(GltfReader& reader, int texture, const std::string& place);
 // Mean over all texels, each channel in [0, 1]: stands in for textures that are not supported yet.
 V3d mean_texel(GltfReader& reader, int texture, const std::string& place, bool srgb);
 
-// gltf_mesh.cpp: the largest coordinate of a mesh in the space that the transform leads to; 0 without a mesh (-1).
-double mesh_extent(const GltfReader& reader, int mesh, const M44d& transform);
 // to_world, here and below: from the node's space to the scene's, which counts in Scene::unit.
-// Adds a mesh as one object, its vertices transformed to world space. node_place: the node's, which messages name too:
+// gltf_mesh.cpp: adds a mesh as one object, its vertices transformed to world space. node_place: the node's, which messages name too:
 // its transform may be what is wrong.
 void append_mesh(GltfReader& reader, int mesh, const std::string& node_place, const M44d& to_world,
                  const std::string& object_name);

@@ -15,17 +15,34 @@ float subtractable_middle(float low, float high) {
     return same_side && farthest <= 2 * nearest ? low + (high - low) / 2 : 0;
 }
 
-// Extents in metres that products of three lengths, and of three smaller ones, leave in the range of floats.
-constexpr double SMALLEST_USUAL_EXTENT = 0x1p-20;
-constexpr double LARGEST_USUAL_EXTENT = 0x1p20;
+// Products of three lengths between these are normal floats, with room for those of a triangle's height and of the way
+// to it.
+constexpr double SHORTEST_USUAL = 0x1p-40;
+constexpr double LONGEST_USUAL = 0x1p40;
+// A triangle's height over its longest side below which nothing is left of it in floats.
+constexpr double FLATTEST = 0x1p-40;
 
 }  // namespace
 
-double scene_unit(double extent) {
-    if (extent == 0 || (extent >= SMALLEST_USUAL_EXTENT && extent <= LARGEST_USUAL_EXTENT)) return 1;
-    int exponent = 0;
-    std::frexp(extent, &exponent);
-    return std::ldexp(1.0, exponent);
+void LengthRange::add(const Scene& scene, const std::array<uint32_t, 3>& vertices) {
+    std::array<V3d, 3> corner;
+    for (size_t k = 0; k < 3; ++k)
+        corner[k] = V3d(scene.vertices[vertices[k]].position);
+    const V3d a = corner[1] - corner[0], b = corner[2] - corner[0];
+    const double area = a.cross(b).length();
+    const double longest2 = std::max({a.length2(), b.length2(), (b - a).length2()});
+    if (!(area > FLATTEST * longest2)) return;
+    smallest = std::min(smallest, std::sqrt(area));
+    for (const V3d& position : corner)
+        for (int axis = 0; axis < 3; ++axis)
+            largest = std::max(largest, std::abs(position[axis]));
+}
+
+double scene_unit(const LengthRange& lengths) {
+    const auto [smallest, largest] = lengths;
+    if (largest == 0 || (smallest >= SHORTEST_USUAL && largest <= LONGEST_USUAL)) return 1;
+    const double middle = std::max(std::sqrt(smallest) * std::sqrt(largest), largest / LONGEST_USUAL);
+    return std::exp2(std::round(std::log2(middle)));
 }
 
 void move_near_origin(Scene& scene) {

@@ -6,11 +6,26 @@
 
 #include "scene/scene.h"
 
+#include <array>
+#include <cstdint>
+#include <limits>
+
 namespace obscura {
 
-// The unit, in metres, of a scene whose coordinates reach `extent` metres from the origin: 1, but below 2^-20 m and above
-// 2^20 m the power of two that brings the extent into [0.5, 1).
-double scene_unit(double extent);
+// The lengths of which triangle tests make products: how far triangles lie from the origin, and how wide they are.
+struct LengthRange {
+    double smallest =
+        std::numeric_limits<double>::infinity();  // side of a square of the least triangle's double area
+    double largest = 0;                           // coordinate
+
+    // Triangles without area don't count: they are dropped.
+    void add(const Scene& scene, const std::array<uint32_t, 3>& vertices);
+};
+
+// The unit that a scene with these lengths in metres is measured in: 1 if they lie between 2^-40 and 2^40, else the power
+// of two in their middle, so that as many as can keep their products of three in the range of floats. Above a ratio of
+// 2^80 it's the smallest that don't.
+double scene_unit(const LengthRange& lengths);
 
 // Subtracts, axis by axis, the middle of the bounds where the scene is farther from zero than it is wide. There the
 // difference of two floats is exact (Sterbenz 1974), so that the geometry stays what the file says, to the bit; what rays

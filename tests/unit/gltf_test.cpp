@@ -232,7 +232,8 @@ TEST(Gltf, TrianglesCountAsLongAsKernelsFindTheirNormal) {
     // Its products agree in every bit of a float and differ in the next.
     EXPECT_EQ(kept({0, 0, 0, 0.5118216f, 0.9504637f, 0, 0.22135203f, 0.41105545f, 0}), 1u);
     EXPECT_EQ(kept({0, 0, 0, 1e-18f, 0, 0, 0, 1e-18f, 0}), 1u);
-    EXPECT_EQ(kept({0, 0, 0, 1e-20f, 0, 0, 0, 1e-20f, 0}), 0u) << "the product is no normal float";
+    EXPECT_EQ(kept({0, 0, 0, 1e-20f, 0, 0, 0, 1e-20f, 0}), 1u) << "in a unit between both";
+    EXPECT_EQ(kept({0, 0, 0, 1e-34f, 0, 0, 0, 1e-34f, 0}), 0u) << "the product is no normal float";
 }
 
 TEST(Gltf, TrianglesWithoutAreaAreDroppedAndCounted) {

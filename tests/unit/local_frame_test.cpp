@@ -12,6 +12,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <utility>
+#include <vector>
+
 namespace obscura {
 namespace {
 
@@ -46,12 +50,20 @@ TEST(LocalFrame, SceneAroundTheOriginStays) {
 }
 
 TEST(LocalFrame, UnitOfUsualScenesIsTheMetre) {
-    for (const double extent : {0.0, 0x1p-20, 1e-3, 1.0, 1e5, 0x1p20})
-        EXPECT_EQ(scene_unit(extent), 1) << extent;
-    for (const double extent : {0x1p-140, 0x1.8p-60, 0x1.fp-21, 0x1.1p20, 0x1p60, 0x1.8p126}) {
-        EXPECT_GE(extent / scene_unit(extent), 0.5) << extent;
-        EXPECT_LT(extent / scene_unit(extent), 1) << extent;
+    EXPECT_EQ(scene_unit({}), 1) << "no triangle";
+    for (const auto& [smallest, largest] : {std::pair{1.0, 1.0}, {1e-6, 10.0}, {1e-12, 1e12}})
+        EXPECT_EQ(scene_unit({smallest, largest}), 1) << largest;
+}
+
+TEST(LocalFrame, UnitKeepsSmallestAndLargestInRange) {
+    for (const auto& [smallest, largest] :
+         {std::pair{0x1p-140, 0x1p-138}, {1e-20, 10.0}, {1.0, 1e17}, {0x1p60, 0x1p61}, {0x1p100, 0x1p126}}) {
+        const double unit = scene_unit({smallest, largest});
+        EXPECT_EQ(std::exp2(std::round(std::log2(unit))), unit);
+        EXPECT_GE(smallest / unit, 0x1p-40) << largest;
+        EXPECT_LE(largest / unit, 0x1p40) << largest;
     }
+    EXPECT_LE(1e30 / scene_unit({1e-30, 1e30}), 0x1p41) << "the largest stay";
 }
 
 TEST(LocalFrame, ReaderMovesAFarScene) {
@@ -90,11 +102,11 @@ TEST(LocalFrame, ReaderGivesTinyAndHugeScenesAUnitOfTheirOwn) {
     ASSERT_EQ(usual.unit, 1);
     ASSERT_EQ(usual.triangles.size(), 1u);
     const Radiometry averages = compute_radiometry(usual);
-    for (const int exponent : {-140, -60, -21, 21, 60, 126}) {
+    for (const int exponent : {-140, -60, -41, 41, 60, 126}) {
         SCOPED_TRACE(exponent);
         const double size = std::ldexp(1.0, exponent);
         const Scene scene = scaled_triangle(exponent);
-        EXPECT_EQ(scene.unit, 2 * size);
+        EXPECT_EQ(scene.unit, size);
         EXPECT_EQ(diagonal(scene), size * diagonal(usual));
         ASSERT_EQ(scene.triangles.size(), 1u);
         for (size_t i = 0; i < usual.vertices.size(); ++i)
@@ -112,6 +124,28 @@ TEST(LocalFrame, ReaderGivesTinyAndHugeScenesAUnitOfTheirOwn) {
         EXPECT_EQ(found.emitted, size * size * averages.emitted);
         EXPECT_EQ(found.ambient_bleeding, averages.ambient_bleeding);
     }
+}
+
+// Neither triangles without area nor vertices of no triangle say anything about the scene's size; a far object does, and
+// leaves near ones what they need.
+TEST(LocalFrame, UnitIsThatOfTrianglesWithArea) {
+    const auto unit_with = [](const std::vector<float>& more, const std::vector<uint8_t>& indices) {
+        const test::TemporaryFolder folder;
+        test::GltfBuilder file;
+        file.add_triangle();
+        const int positions = file.accessor<float>(more, "VEC3");
+        file.append(
+            "nodes",
+            {{"mesh", file.mesh({{"POSITION", positions}}, file.accessor<uint8_t>(indices, "SCALAR"))}});
+        const Scene scene = load_gltf(file.write_glb(folder.file("junk.glb")));
+        EXPECT_GE(scene.triangles.size(), 1u);
+        return scene.unit;
+    };
+    EXPECT_EQ(unit_with({1e17f, 0, 0, 1e17f, 1, 0, 1e17f, 2, 0}, {0, 1, 2}), 1) << "no area";
+    EXPECT_EQ(unit_with({0, 0, 0, 1, 0, 0, 0, 1, 0, 1e17f, 0, 0}, {0, 1, 2}), 1) << "not used";
+    const double unit = unit_with({1e17f, 0, 0, 1e17f, 1e17f, 0, 1e17f, 0, 1e17f}, {0, 1, 2});
+    EXPECT_GE(1 / unit, 0x1p-40);
+    EXPECT_LE(1e17 / unit, 0x1p40);
 }
 
 // A lamp whose light at the distance of its scene's size is beyond floats.
