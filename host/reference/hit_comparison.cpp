@@ -50,6 +50,14 @@ std::string outcome_text(Outcome outcome) {
     OBSCURA_CHECK(false, "outcome {}", static_cast<int>(outcome));
 }
 
+// The index mixed by SplitMix64 (Steele, Lea, Flood 2014).
+bool is_drawn(size_t i, size_t every) {
+    uint64_t mixed = (i + 1) * 0x9e3779b97f4a7c15u;
+    mixed = (mixed ^ mixed >> 30) * 0xbf58476d1ce4e5b9u;
+    mixed = (mixed ^ mixed >> 27) * 0x94d049bb133111ebu;
+    return (mixed ^ mixed >> 31) % every == 0;
+}
+
 uint64_t* HitTally::count_of(Outcome outcome) {
     if (outcome == Outcome::tie) return &ties;
     if (outcome == Outcome::edge) return &edges;
@@ -115,7 +123,7 @@ HitTally HitComparison::compare(std::span<const TraceRay> rays, std::span<const 
         tbb::blocked_range<size_t>(0, rays.size(), 4096), HitTally{},
         [&](const auto& range, HitTally tally) {
             for (size_t i = range.begin(); i < range.end(); ++i) {
-                const Outcome outcome = compare_one(rays[i], device[i], embree[i], i % every == 0, tally);
+                const Outcome outcome = compare_one(rays[i], device[i], embree[i], is_drawn(i, every), tally);
                 tally.count(outcome, rays[i],
                             [&] { return std::pair(hit_text(device[i]), hit_text(embree[i])); });
             }

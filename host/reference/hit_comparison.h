@@ -63,6 +63,10 @@ struct HitTally {
     bool keeps(Outcome outcome) const;
 };
 
+// Whether ray i of a queue belongs to the part, one in `every`, that the oracle judges anyway. A fixed choice without
+// pattern: a stride that is a multiple of K would look at the first of a point's K rays only.
+bool is_drawn(size_t i, size_t every);
+
 class HitComparison {
   public:
     explicit HitComparison(const Scene& scene) : scene_(scene), embree_(scene), oracle_(scene) {}
@@ -76,7 +80,7 @@ class HitComparison {
     double distance_error(const TraceRay& ray, const BruteHit& exact) const;
     double weight_error(const TraceRay& ray, const BruteHit& exact, size_t corner) const;
 
-    // One ray in `every` is judged even if both tracers agree: they could be wrong together.
+    // One ray in `every` (is_drawn) is judged even if both tracers agree: they could be wrong together.
     HitTally compare(std::span<const TraceRay> rays, std::span<const TraceHit> device,
                      std::span<const TraceHit> embree, size_t every) const;
 

@@ -105,7 +105,7 @@ ResultTally ResultComparison::shadow(const CapturedRays& captured, size_t every,
         ++hits.rays;
         if (given.w == 0) ++hits.hits;
         const auto expect = [&](const Hits& along) { return light_through(ray, along); };
-        compare_one(ray, given, hits_of_embree(ray), expect, i % every == 0, results, hits);
+        compare_one(ray, given, hits_of_embree(ray), expect, is_drawn(i, every), results, hits);
     });
 }
 
@@ -120,7 +120,7 @@ ResultTally ResultComparison::obscurance(const CapturedRays& captured, const Fra
         const auto expect = [&](const Hits& along) {
             return brought_back(ray, captured.starts[i], miss, along);
         };
-        compare_one(ray, captured.results[i], embree, expect, i % every == 0, results, hits);
+        compare_one(ray, captured.results[i], embree, expect, is_drawn(i, every), results, hits);
     });
 }
 

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -75,6 +76,18 @@ TEST_F(HitComparisonOfSphere, KeepsTheFirstDisagreementsOnly) {
     all.add(once);
     EXPECT_EQ(all.device_wrong, 2 * once.device_wrong);
     EXPECT_EQ(all.disagreements.size(), kept);
+}
+
+TEST(RaysJudgedAnyway, AreSpreadOverTheRaysOfAPoint) {
+    constexpr size_t K = 5, POINTS = 1 << 18, EVERY = 1000;  // a multiple of K
+    std::array<int, K> drawn{};
+    for (size_t i = 0; i < K * POINTS; ++i)
+        drawn[i % K] += is_drawn(i, EVERY) ? 1 : 0;
+    // Poisson's standard deviation of 262 is 16.
+    for (const int count : drawn)
+        EXPECT_NEAR(count, POINTS / EVERY, 5 * 16);
+    for (size_t i = 0; i < 1000; ++i)
+        EXPECT_TRUE(is_drawn(i, 1));
 }
 
 TEST(HitTexts, RayHasAllItsDigits) {
