@@ -11,6 +11,7 @@ function(obscura_script_test label name)
   endif()
 endfunction()
 
+obscura_script_test(unit devices_matrix_test)
 obscura_script_test(unit include_order_test)
 obscura_script_test(unit readme_test)
 obscura_script_test(unit report_test)
