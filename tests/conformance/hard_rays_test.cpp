@@ -11,6 +11,7 @@
 #include "support/device.h"
 #include "support/scene_builder.h"
 
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -174,6 +175,36 @@ TEST_F(HardRays, SliversAreHitWithinTheirRounding) {
             expect_none_wrong(scene, edge_rays(scene, 2000, 11));
         }
     }
+}
+
+// Readers drop triangles without area. One in ten here has none: points, needles and corners that coincide.
+TEST_F(HardRays, TrianglesWithoutAreaAreNeverHit) {
+    Scene scene = triangle_soup(2000, 0.3f, 1, 14);
+    const std::vector<TraceRay> rays = edge_rays(scene, 10000, 15);
+    std::vector<TraceHit> expected = trace(scene, rays);
+    std::vector<uint32_t> moved_to;
+    std::vector<Triangle> triangles;
+    for (const Triangle& triangle : scene.triangles) {
+        if (moved_to.size() % 9 == 0) {
+            const auto [a, b, c] = triangle.vertex;
+            const std::array<uint32_t, 3> flat[] = {{a, a, a}, {a, b, b}, {c, a, c}};
+            triangles.push_back(triangle);
+            triangles.back().vertex = flat[moved_to.size() / 9 % 3];
+        }
+        moved_to.push_back(static_cast<uint32_t>(triangles.size()));
+        triangles.push_back(triangle);
+    }
+    scene.triangles = triangles;
+    const std::vector<TraceHit> found = trace(scene, rays);
+    size_t hits = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        if (expected[i].primitive != NO_PRIMITIVE) {
+            expected[i].primitive = moved_to[expected[i].primitive];
+            ++hits;
+        }
+        ASSERT_TRUE(same_bits(found[i], expected[i])) << "ray " << i << ": primitive " << found[i].primitive;
+    }
+    EXPECT_GT(hits, 5000U);
 }
 
 // Triangles of all sizes down to 2^-40 around one corner, seen from everywhere.
