@@ -22,9 +22,10 @@ constexpr double LARGEST_USUAL_SHARE = 1;
 // A picture is whole pixels wide and high: less than this is no other shape.
 constexpr double ASPECT_TOLERANCE = 0.01;
 
-// Rays start above a surface by the rounding of its coordinates. Below this share of them d_max feels it: W of a corner
-// is off by 0.0014 here and in inverse proportion (tests/image/hard_scenes_test.cpp).
-constexpr double SMALLEST_EXACT_SHARE = 1e-4;
+// Rays start above a surface by the rounding of its coordinates. Below this share of them d_max feels it where surfaces
+// touch: W by the square root is off by up to 0.003 here (tests/image/contact_test.cpp), that of a corner by 0.0014 at a
+// hundredth of it (tests/image/hard_scenes_test.cpp).
+constexpr double SMALLEST_EXACT_SHARE = 0.01;
 
 // m
 double farthest_coordinate(const Scene& scene) {
@@ -79,8 +80,8 @@ double resolve_max_distance(const MaxDistance& distance, const Scene& scene) {
     const double farthest = farthest_coordinate(scene);
     if (metres < SMALLEST_EXACT_SHARE * farthest)
         log_warning(
-            "--dmax {} is less than 1e-4 of the scene's farthest coordinate, {:.4g} m: rounding may shift "
-            "obscurance by more than 1/512.",
+            "--dmax {} is less than 1 % of the scene's farthest coordinate, {:.4g} m: rounding may shift "
+            "obscurance by more than 1/512 where surfaces touch.",
             max_distance_text(distance), farthest);
     return metres;
 }

@@ -141,8 +141,9 @@ def write_room(path):
     path.write_text(json.dumps(gltf), encoding="utf-8")
 
 
-def obscura(*arguments, cwd=None):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, check=False, cwd=cwd)
+def obscura(*arguments, cwd=None, **environment):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, check=False, cwd=cwd,
+                          env={**os.environ, **environment})
 
 
 class Options(unittest.TestCase):
@@ -160,11 +161,11 @@ class Options(unittest.TestCase):
             raise unittest.SkipTest("there is no OpenCL device: " + result.stderr)
         assert result.returncode == 0, result.stderr
 
-    def render(self, name, arguments, replaces=()):
+    def render(self, name, arguments, replaces=(), **environment):
         """Renders NAME.exr and NAME.json; arguments, and other spellings in replaces, take the base's place."""
         kept = [word for pair in BASE.items() if pair[0] not in (*arguments, *replaces) for word in pair]
         result = obscura("render", self.scene, "-o", self.folder / f"{name}.exr", "--stats",
-                         self.folder / f"{name}.json", *kept, *arguments)
+                         self.folder / f"{name}.json", *kept, *arguments, **environment)
         self.assertEqual(0, result.returncode, result.stderr)
         return result
 
@@ -191,6 +192,12 @@ class Options(unittest.TestCase):
     def test_same_arguments_give_same_picture(self):
         self.render("again", [])
         self.assertFalse(self.differs("again"))
+
+    def test_number_of_threads_keeps_the_picture(self):
+        for count in ("1", "3"):
+            with self.subTest(threads=count):
+                self.render("threads", [], POCL_MAX_PTHREAD_COUNT=count)
+                self.assertFalse(self.differs("threads"))
 
     def test_options_of_the_picture_change_it(self):
         for spellings, arguments in CHANGES_PICTURE.items():

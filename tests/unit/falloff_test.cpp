@@ -117,9 +117,9 @@ TEST(MaxDistance, ReachBelowTheRoundingOfCoordinatesIsWarnedOf) {
         resolve_max_distance(parse_max_distance(text), far);
         return testing::internal::GetCapturedStderr();
     };
-    EXPECT_EQ(said_of("0.91"), "");
-    EXPECT_NE(said_of("0.9").find("less than 1e-4 of the scene's farthest coordinate, 9010 m"),
-              std::string::npos);
+    const std::string warning = "less than 1 % of the scene's farthest coordinate, 9010 m";
+    EXPECT_EQ(said_of("91").find(warning), std::string::npos);
+    EXPECT_NE(said_of("90").find(warning), std::string::npos);
 }
 
 }  // namespace
