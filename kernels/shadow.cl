@@ -7,20 +7,19 @@
 #include "lib/status.clh"
 #include "lib/stream.clh"
 
-// Share of light that reaches the origin, per channel: the product over the panes in between, 0 at the first opaque
-// surface. hit: the first surface on the way.
+// Share of light that passes the panes between the origin and the light, per channel: their product, 0 at the first opaque
+// surface.
 inline float3 transmittance(global const BvhNode* nodes, global const TriangleBlock* blocks,
                             global const SceneTriangle* triangles, global const SceneMaterial* materials,
                             global const uchar4* texels, global const float* tables, float3 origin,
-                            float3 direction, float t_light, Hit hit, bool* overflow) {
-    const bool any_hit = !NEED_TRANSMISSION;
+                            float3 direction, float t_light, bool* overflow) {
     const float3 unit = normalize(direction);
     const float3 target = origin + direction;
     float3 result = (float3)(1.0f);
     for (int segment = 0; segment < MAX_SEGMENTS; ++segment) {
-        *overflow = isnan(hit.t);
+        const Hit hit = traverse(nodes, blocks, origin, direction, t_light, false);
+        if (isnan(hit.t)) *overflow = true;
         if (hit.primitive == NO_PRIMITIVE) return result;
-        if (any_hit || *overflow) return (float3)(0.0f);
         global const SceneTriangle* triangle = triangles + hit.primitive;
         global const SceneMaterial* material = materials + triangle->ids.x;
         if (!is_pane(material) || segment == MAX_PANES) return (float3)(0.0f);
@@ -29,7 +28,6 @@ inline float3 transmittance(global const BvhNode* nodes, global const TriangleBl
                                      -dot(unit, s.n_geo));
         origin = s.position - s.offset * s.n_geo;
         if (t_light == 1.0f) direction = target - origin;
-        hit = traverse(nodes, blocks, origin, direction, t_light, any_hit);
     }
     return (float3)(0.0f);
 }
@@ -48,16 +46,19 @@ kernel void shadow(global const Frame* frame, global const BvhNode* nodes, globa
             const float4 direction = shadow_rays[SHADOW_DIRECTION * capacity + i];
             add_ray(&stream, shadow_rays[SHADOW_ORIGIN * capacity + i].xyz, direction.xyz, direction.w);
         }
-        trace_stream(nodes, blocks, &stream, !NEED_TRANSMISSION);
+        trace_stream(nodes, blocks, &stream, true);
         for (uint i = first; i < last; ++i) {
             const float4 origin = shadow_rays[SHADOW_ORIGIN * capacity + i];
             const uint result = as_uint(origin.w);
             if (!check_slot(counters, result, capacity, STAGE_SHADOW, i)) continue;
             const uint ray = i - first;
-            bool overflow;
-            const float3 passed =
-                transmittance(nodes, blocks, triangles, materials, texels, tables, origin.xyz,
-                              stream.directions[ray], stream.t_max[ray], stream.hits[ray], &overflow);
+            const Hit hit = stream.hits[ray];
+            bool overflow = isnan(hit.t);
+            float3 passed = (float3)(hit.t < stream.t_max[ray] ? 0.0f : 1.0f);
+            if (NEED_TRANSMISSION && passed.x > 0.0f && hit.primitive != NO_PRIMITIVE) {
+                passed = transmittance(nodes, blocks, triangles, materials, texels, tables, origin.xyz,
+                                       stream.directions[ray], stream.t_max[ray], &overflow);
+            }
             if (overflow) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_SHADOW, i);
             visibility[result] = (float4)(passed, 0.0f);
         }

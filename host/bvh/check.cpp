@@ -4,6 +4,7 @@
 #include "bvh/binary_tree.h"
 #include "bvh/clip.h"
 #include "bvh/layout.h"
+#include "scene/material.h"
 
 #include <fmt/format.h>
 
@@ -158,6 +159,9 @@ class Checker {
             fail("block {} holds triangle {} of {}", index, triangle, scene_.triangles.size());
         else if (block_triangle(bvh_.blocks[index], slot) != triangle_vertices(scene_, triangle))
             fail("the vertices of triangle {} in block {} are not the scene's", triangle, index);
+        else if (is_pane_slot(bvh_.blocks[index], slot) !=
+                 is_pane(scene_.materials[scene_.triangles[triangle].material]))
+            fail("triangle {} in block {} is marked wrongly as a pane or as none", triangle, index);
         if (slot > 0 && block_primitive(bvh_.blocks[index], slot - 1) == NO_PRIMITIVE)
             fail("slot {} of block {} is filled after an empty one", slot, index);
     }

@@ -5,6 +5,7 @@
 #include "bvh/collapse.h"
 
 #include "bvh/layout.h"
+#include "scene/material.h"
 
 #include <tbb/parallel_invoke.h>
 
@@ -234,8 +235,9 @@ class Writer {
         const auto first = static_cast<uint32_t>(bvh_.blocks.size());
         for (size_t i = 0; i < triangles.size(); ++i) {
             if (i % BLOCK_WIDTH == 0) bvh_.blocks.push_back(empty_block());
+            const Material& material = scene_.materials[scene_.triangles[triangles[i]].material];
             set_triangle(bvh_.blocks.back(), i % BLOCK_WIDTH, triangles[i],
-                         triangle_vertices(scene_, triangles[i]));
+                         triangle_vertices(scene_, triangles[i]), is_pane(material));
         }
         return leaf_reference(first, static_cast<uint32_t>(bvh_.blocks.size()) - first);
     }

@@ -74,13 +74,19 @@ inline TriangleBlock empty_block() {
     return block;
 }
 
+// NO_PRIMITIVE where the slot is empty.
 inline uint32_t block_primitive(const TriangleBlock& block, size_t slot) {
-    return block.primitive.*U32_LANES[slot];
+    const uint32_t primitive = block.primitive.*U32_LANES[slot];
+    return primitive == NO_PRIMITIVE ? NO_PRIMITIVE : primitive & ~PRIMITIVE_PANE;
+}
+inline bool is_pane_slot(const TriangleBlock& block, size_t slot) {
+    const uint32_t primitive = block.primitive.*U32_LANES[slot];
+    return primitive != NO_PRIMITIVE && (primitive & PRIMITIVE_PANE) != 0;
 }
 
 inline void set_triangle(TriangleBlock& block, size_t slot, uint32_t primitive,
-                         const std::array<V3f, 3>& vertices) {
-    block.primitive.*U32_LANES[slot] = primitive;
+                         const std::array<V3f, 3>& vertices, bool pane = false) {
+    block.primitive.*U32_LANES[slot] = primitive | (pane ? PRIMITIVE_PANE : 0);
     for (size_t vertex = 0; vertex < 3; ++vertex)
         for (size_t axis = 0; axis < 3; ++axis)
             block.vertex[3 * vertex + axis].*F32_LANES[slot] = vertices[vertex][static_cast<int>(axis)];

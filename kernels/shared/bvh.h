@@ -18,6 +18,8 @@
 #define BVH_EMPTY_CHILD 0xffffffffu  // also marked by bounds that no ray hits (lower = +inf, upper = -inf)
 
 #define NO_PRIMITIVE 0xffffffffu  // an empty slot of a block; also the hit record of a miss
+// Set in a block beside a triangle's index where light passes through it: shadow rays don't end there.
+#define PRIMITIVE_PANE 0x80000000u
 
 #ifdef __cplusplus
 namespace obscura {
@@ -33,7 +35,8 @@ typedef struct BvhNode {
 // 160 bytes. Four triangles, structure of arrays: row 3 * vertex + axis.
 typedef struct TriangleBlock {
     f32x4 vertex[9];
-    u32x4 primitive;  // triangle indices in the scene; NO_PRIMITIVE = empty slot (vertices all zero)
+    u32x4
+        primitive;  // triangle indices in the scene, with PRIMITIVE_PANE; NO_PRIMITIVE = empty slot (vertices all zero)
 } TriangleBlock;
 
 #ifdef __cplusplus

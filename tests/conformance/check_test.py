@@ -19,7 +19,7 @@ MUTANTS = [
     ("swapped children", "triangle soup", "lib/stream.clh", "stack_child[top] = children[other];", "stack_child[top] = children[nearest];"),
     ("rays that follow another child", "triangle soup", "lib/stream.clh", "(uint)masks[i] >> lane", "(uint)masks[i] >> (lane ^ 1u)"),
     ("rays given up too early", "triangle soup", "lib/stream.clh", "limit >= start ?", "limit >= 1.5f * start ?"),
-    ("the next primitive", "triangle soup", "lib/intersect.clh", "hit->primitive = primitive;", "hit->primitive = primitive ^ 1u;"),
+    ("the next primitive", "triangle soup", "lib/intersect.clh", "ws[lane];\n            hit->primitive = primitive;", "ws[lane];\n            hit->primitive = primitive ^ 1u;"),
     ("distances too long by 1e-5", "triangle soup", "lib/intersect.clh", "hit->t = ts[lane];", "hit->t = 1.00001f * ts[lane];"),
     ("weights of other corners", "triangle soup", "lib/intersect.clh", "hit->u = vs[lane];", "hit->u = ws[lane];"),
     ("d from the offset origin", "room", "obscurance.cl", "length(start + hit.t * direction)", "length(hit.t * direction)"),

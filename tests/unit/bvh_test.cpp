@@ -143,6 +143,20 @@ TEST(Bvh, FourTrianglesAreOneFullBlock) {
         EXPECT_EQ(block_primitive(bvh.blocks[0], slot), slot);
 }
 
+TEST(Bvh, PanesAreMarked) {
+    Scene scene = identical_triangles(4);
+    scene.materials.emplace_back().transmission = 0.5f;
+    scene.triangles[2].material = 1;
+    Bvh bvh = build_bvh(scene);
+    for (size_t slot = 0; slot < BLOCK_WIDTH; ++slot) {
+        EXPECT_EQ(block_primitive(bvh.blocks[0], slot), slot);
+        EXPECT_EQ(is_pane_slot(bvh.blocks[0], slot), slot == 2);
+    }
+    EXPECT_TRUE(check_bvh(bvh, scene).empty());
+    scene.triangles[1].material = 1;
+    EXPECT_FALSE(check_bvh(bvh, scene).empty());
+}
+
 TEST(Bvh, PowerOfTwoScaleGivesTheSameTree) {
     Scene scene = triangle_soup(2000, 0.2F, 0.1F, 6);
     const Bvh original = build_bvh(scene);
