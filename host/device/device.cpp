@@ -43,6 +43,7 @@ Device::Device(cl::Device handle, DeviceInfo info) : handle_(std::move(handle)),
     check(handle_.getInfo(CL_DEVICE_MAX_WORK_GROUP_SIZE, &group_size), "clGetDeviceInfo", STAGE, info_.name);
     max_work_group_size_ = group_size;
     compiles_at_launch_ = info_.platform == POCL_PLATFORM_NAME;
+    runs_items_in_turn_ = info_.is_cpu && (compiles_at_launch_ || info_.platform == "Oclgrind");
 }
 
 void Device::finish(std::string_view stage) const {

@@ -31,6 +31,9 @@ class Device {
     // kernel for grids below 65536 items; 65536 items that have nothing to do cost it 0.1 ms, compiling 0.4
     // s.
     uint64_t smallest_grid() const { return compiles_at_launch_ ? 65536 : 0; }
+    // The work-items of a group run one after the other, not in the lanes of a vector: known of PoCL and Oclgrind. (Mesa's
+    // llvmpipe runs them in lanes, and ends every loop after 65535 turns.)
+    bool runs_items_in_turn() const { return runs_items_in_turn_; }
 
     MemoryLedger& memory() { return memory_; }
     const MemoryLedger& memory() const { return memory_; }
@@ -46,6 +49,7 @@ class Device {
     bool correctly_rounded_division_ = false;
     uint64_t max_work_group_size_ = 0;
     bool compiles_at_launch_ = false;
+    bool runs_items_in_turn_ = false;
     MemoryLedger memory_;
 };
 

@@ -133,10 +133,10 @@ Frame make_frame(const FrameInput& input, const PixelRect& rect, uint32_t capaci
 
     // What no float holds is as good as nothing or all: the scene measures about one of its units.
     const bool unlimited = std::isinf(input.d_max);
-    const double d_max =
-        unlimited ? input.d_max
-                  : std::clamp(input.d_max / input.scene.unit, double{std::numeric_limits<float>::min()},
-                               double{std::numeric_limits<float>::max()});
+    const double d_max = unlimited ? input.d_max
+                                   : std::clamp(input.d_max / input.scene.unit,
+                                                static_cast<double>(std::numeric_limits<float>::min()),
+                                                static_cast<double>(std::numeric_limits<float>::max()));
     const Falloff& falloff = settings.falloff;
     const double norm = falloff.kind == FalloffKind::exp ? -std::expm1(-falloff.parameter) : 1;
     frame.obscurance = {static_cast<float>(d_max), unlimited ? 0.0f : static_cast<float>(1 / d_max),
