@@ -204,6 +204,7 @@ ArrangedRays::ArrangedRays(std::span<const TraceRay> rays, std::vector<uint32_t>
       hits_(rays_.size(), HitBlock{}) {
     for (size_t i = 0; i < order_.size(); ++i) {
         const TraceRay& ray = rays[order_[i]];
+        check_embree_limit(ray.origin, ray.direction);
         RayBlock& block = rays_[i / BLOCK];
         const size_t lane = i % BLOCK;
         block.org_x[lane] = ray.origin.x;

@@ -4,6 +4,8 @@
 #include "base/error.h"
 #include "base/stopwatch.h"
 
+#include <cmath>
+
 namespace obscura {
 namespace {
 
@@ -12,7 +14,23 @@ bool count_bytes(void* sum, ssize_t bytes, bool) {
     return true;
 }
 
+bool is_within_limit(const V3f& vector) {
+    return std::abs(vector.x) <= EMBREE_LARGEST && std::abs(vector.y) <= EMBREE_LARGEST &&
+           std::abs(vector.z) <= EMBREE_LARGEST;
+}
+
 }  // namespace
+
+void check_embree_limit(const V3f& origin, const V3f& direction) {
+    const auto refuse = [](const char* ray, const V3f& far_away, const char* what) {
+        throw InputError(
+            "{} ({:g}, {:g}, {:g}), and Embree takes no coordinate above {:g}; move the {} nearer to the "
+            "scene",
+            ray, far_away.x, far_away.y, far_away.z, EMBREE_LARGEST, what);
+    };
+    if (!is_within_limit(origin)) refuse("a ray starts at", origin, "camera");
+    if (!is_within_limit(direction)) refuse("a shadow ray goes along", direction, "light");
+}
 
 EmbreeScene::EmbreeScene(const Scene& scene, bool robust) : device_(rtcNewDevice(nullptr)) {
     OBSCURA_CHECK(device_ != nullptr, "Embree has no device, error {}",

@@ -14,6 +14,13 @@
 
 namespace obscura {
 
+// No coordinate of a ray may be larger, or Embree aborts: its FLT_LARGE.
+inline constexpr float EMBREE_LARGEST = 1.844e18f;
+
+// For every ray before Embree sees it. Throws InputError that names what lies too far away: only a camera ray starts
+// beyond the scene, and only a shadow ray's direction is as long as its way.
+void check_embree_limit(const V3f& origin, const V3f& direction);
+
 class EmbreeScene {
   public:
     // Copies what it needs. robust: watertight intersection, as ours is; else Embree's quickest.

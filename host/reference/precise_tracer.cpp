@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "reference/directions.h"
+#include "reference/embree_scene.h"
 
 #include <embree3/rtcore.h>
 
@@ -104,20 +105,24 @@ Query make_query(const Ray& ray) {
 }
 
 RTCRay float_ray(const Ray& ray) {
+    const V3f origin(ray.origin);
+    const V3f direction(ray.direction);
+    check_embree_limit(origin, direction);
     RTCRay result{};
-    result.org_x = static_cast<float>(ray.origin.x);
-    result.org_y = static_cast<float>(ray.origin.y);
-    result.org_z = static_cast<float>(ray.origin.z);
-    result.dir_x = static_cast<float>(ray.direction.x);
-    result.dir_y = static_cast<float>(ray.direction.y);
-    result.dir_z = static_cast<float>(ray.direction.z);
+    result.org_x = origin.x;
+    result.org_y = origin.y;
+    result.org_z = origin.z;
+    result.dir_x = direction.x;
+    result.dir_y = direction.y;
+    result.dir_z = direction.z;
     result.tfar = float_above(ray.t_max);
     result.mask = ~0U;
     return result;
 }
 
 // A rounded ray strays from the true one by 2^-24 of its origin's coordinates and of its length. Within the scene, seen
-// from any of its cameras, neither is longer than a few times the largest coordinate.
+// from any of its cameras, neither is longer than a few times the largest coordinate. From farther than Embree's limit no
+// ray is traced.
 double box_padding(const Scene& scene) {
     double largest = 0;
     const auto include = [&](const V3d& p) {
@@ -128,7 +133,7 @@ double box_padding(const Scene& scene) {
         include(V3d(vertex.position));
     for (const Camera& camera : scene.cameras)
         include(camera.camera_to_world.translation());
-    return 0x1p-21 * largest;
+    return 0x1p-21 * std::min(largest, double{EMBREE_LARGEST});
 }
 
 }  // namespace

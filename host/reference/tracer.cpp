@@ -20,6 +20,7 @@ namespace {
 constexpr size_t RAYS_PER_TASK = 1024;
 
 RTCRay embree_ray(const TraceRay& ray) {
+    check_embree_limit(ray.origin, ray.direction);
     RTCRay result{};
     result.org_x = ray.origin.x;
     result.org_y = ray.origin.y;

@@ -5,6 +5,7 @@
 
 #include "reference/hard_rays.h"
 #include "reference/meshes.h"
+#include "support/errors.h"
 
 #include <gtest/gtest.h>
 
@@ -63,6 +64,11 @@ TEST(EmbreeRunner, RepeatsItself) {
         for (size_t i = 0; i < first.size(); ++i)
             ASSERT_EQ(first[i].t, second[i].t) << call_text(mode);
     }
+}
+
+TEST(EmbreeRunner, RefusesRaysBeyondEmbreesLimit) {
+    const std::vector<TraceRay> rays{{{0, 0, 0}, {0, 1e19f, 0}, 1}};
+    EXPECT_INPUT_ERROR(EmbreeRays{rays}, "light");
 }
 
 TEST(EmbreeRunner, CountsTheBytesOfItsHierarchy) {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "reference/brute_force.h"
+#include "support/errors.h"
 #include "support/scene_builder.h"
 
 namespace obscura::reference {
@@ -103,6 +104,19 @@ TEST(PreciseTracer, SmallerIndexWinsATie) {
         builder.triangle({-1, -1, 2}, {1, -1, 2}, {0, 1, 2}, material);
     const PreciseTracer tracer(builder.finish());
     EXPECT_EQ(tracer.nearest({V3d(0, 0, 0), V3d(0, 0, 1)}).primitive, 0u);
+}
+
+// A camera beyond the limit has no rays, and leaves those of another what they are.
+TEST(PreciseTracer, RefusesRaysBeyondEmbreesLimit) {
+    Scene scene = clutter(V3f(0));
+    const V3d direction(0, 0, -1);
+    const Hit hit = PreciseTracer(scene).nearest({V3d(0, 0, 50), direction});
+    ASSERT_TRUE(hit.found());
+    scene.cameras.emplace_back().camera_to_world.setTranslation(V3d(0, 0, 1e25));
+    const PreciseTracer tracer(scene);
+    EXPECT_EQ(tracer.nearest({V3d(0, 0, 50), direction}).primitive, hit.primitive);
+    EXPECT_INPUT_ERROR(tracer.nearest({V3d(0, 0, 1e25), direction}), "camera");
+    EXPECT_INPUT_ERROR(tracer.is_blocked({V3d(0, 0, 1e25), direction}), "camera");
 }
 
 TEST(PreciseTracer, EmptySceneHasNoHits) {

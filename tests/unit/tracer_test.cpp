@@ -4,8 +4,10 @@
 #include "reference/tracer.h"
 
 #include "reference/brute_force.h"
+#include "reference/embree_scene.h"
 #include "reference/hard_rays.h"
 #include "reference/meshes.h"
+#include "support/errors.h"
 
 #include <gtest/gtest.h>
 
@@ -122,6 +124,24 @@ TEST(ReferenceTracer, EmptySceneMissesEverything) {
     tracer.closest(rays, hits);
     EXPECT_EQ(hits[1].primitive, NO_PRIMITIVE);
     tracer.closest({}, {});
+}
+
+TEST(ReferenceTracer, RefusesRaysBeyondEmbreesLimit) {
+    const Scene scene = icosphere(2);
+    const ReferenceTracer tracer(scene);
+    const auto trace = [&](const V3f& origin, const V3f& direction) {
+        const std::vector<TraceRay> rays{{origin, direction, FAR}};
+        std::vector<TraceHit> hits(1);
+        std::vector<uint8_t> blocked(1);
+        tracer.closest(rays, hits);
+        tracer.occluded(rays, blocked);
+        EXPECT_EQ(blocked[0] != 0, hits[0].primitive != NO_PRIMITIVE);
+    };
+    trace({0, 0, EMBREE_LARGEST}, {0, 0, -EMBREE_LARGEST});
+    for (const float wrong : {1.85e18f, -1e19f, FAR, std::numeric_limits<float>::quiet_NaN()}) {
+        EXPECT_INPUT_ERROR(trace({0, wrong, 0}, {0, 0, 1}), "camera");
+        EXPECT_INPUT_ERROR(trace({0, 0, 0}, {0, 0, wrong}), "light");
+    }
 }
 
 #if defined(__SSE__)
