@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/log.h"
@@ -17,6 +17,7 @@
 #include "cli/output_paths.h"
 #include "cli/render_options.h"
 #include "reference/check.h"
+#include "reference/ray_text.h"
 #include "reference/self_test.h"
 #include "scene/gltf.h"
 
@@ -25,7 +26,7 @@ namespace {
 
 struct CheckOptions {
     std::string json;
-    std::vector<float> ray;  // origin, direction, reach
+    std::vector<long double> ray;  // origin, direction, reach
     bool self_test = false;
     std::string only;  // cases of the self-test
 };
@@ -44,6 +45,15 @@ Json to_json(const HitTally& tally) {
             {"distance_error_ulps", tally.distance_ulps}};
 }
 
+// What was checked, and how to tell it.
+struct Checked {
+    std::vector<QueueCheck> rows;
+    const char* title;  // what the rows are
+    uint64_t rendered_rays;
+    const Scene& scene;     // whose frame the rays are in
+    const char* all_right;  // the verdict
+};
+
 // All rows together.
 QueueCheck sum(const std::vector<QueueCheck>& rows) {
     QueueCheck all{"all", {}, {}, true};
@@ -52,10 +62,10 @@ QueueCheck sum(const std::vector<QueueCheck>& rows) {
     return all;
 }
 
-// rendered: rays that the render counted.
-Json to_json(const std::vector<QueueCheck>& rows, const char* title, uint64_t rendered) {
+Json to_json(const Checked& checked) {
+    const std::vector<QueueCheck>& rows = checked.rows;
     Json json = to_json(sum(rows).rays);
-    json["rendered_rays"] = rendered;
+    json["rendered_rays"] = checked.rendered_rays;
     json["passed"] = std::ranges::all_of(rows, &QueueCheck::passes);
     for (const QueueCheck& row : rows) {
         Json numbers = to_json(row.rays);
@@ -68,11 +78,11 @@ Json to_json(const std::vector<QueueCheck>& rows, const char* title, uint64_t re
         numbers["disagreements"] = Json::array();
         for (const Disagreement& ray : row.rays.disagreements) {
             numbers["disagreements"].push_back({{"outcome", outcome_text(ray.outcome)},
-                                                {"ray", ray_text(ray.ray)},
+                                                {"ray", ray_text(checked.scene, ray.ray)},
                                                 {"device", ray.device},
                                                 {"expected", ray.expected}});
         }
-        json[title][row.name] = std::move(numbers);
+        json[checked.title][row.name] = std::move(numbers);
     }
     return json;
 }
@@ -97,54 +107,37 @@ void print_table(const std::vector<QueueCheck>& rows, const std::string& title) 
     fmt::print("The last three columns: the device's largest error, as a share of what rounding explains.\n");
 }
 
-void print_failures(const std::vector<QueueCheck>& rows) {
-    for (const QueueCheck& row : rows) {
+void print_failures(const Checked& checked) {
+    for (const QueueCheck& row : checked.rows) {
         if (row.rays.device_wrong == 0 && !row.passes())
             fmt::print("{}: more than {} of the rays are in doubt\n", row.name, MAX_DOUBTFUL_SHARE);
         for (const Disagreement& ray : row.rays.disagreements) {
             if (ray.outcome != Outcome::device_wrong) continue;
             fmt::print("{}: device {}; expected {}\n    --ray={}\n", row.name, ray.device, ray.expected,
-                       ray_text(ray.ray));
+                       ray_text(checked.scene, ray.ray));
         }
     }
 }
 
-// Table or JSON, and the verdict. title: what the rows are.
-ExitCode report(const CheckOptions& options, const std::vector<QueueCheck>& rows, const char* title,
-                uint64_t rendered) {
-    const bool passed = std::ranges::all_of(rows, &QueueCheck::passes);
+// Table or JSON, and the verdict.
+ExitCode report(const CheckOptions& options, const Checked& checked) {
+    const bool passed = std::ranges::all_of(checked.rows, &QueueCheck::passes);
     if (options.json.empty()) {
-        print_table(rows, title);
-        print_failures(rows);
-        fmt::print("{}\n", passed ? "No hit is wrong." : "The check failed.");
+        print_table(checked.rows, checked.title);
+        print_failures(checked);
+        fmt::print("{}\n", passed ? checked.all_right : "The check failed.");
     } else {
-        write_json(options.json, to_json(rows, title, rendered));
+        write_json(options.json, to_json(checked));
     }
     return passed ? ExitCode::ok : ExitCode::check_failed;
 }
 
-TraceRay make_ray(const std::vector<float>& numbers) {
-    TraceRay ray{{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}, numbers[6]};
-    const float length = ray.direction.length();
-    if (!std::isfinite(ray.origin.length()) || !std::isfinite(length) || !(length > 0) || !(ray.t_max > 0))
-        throw InputError(
-            "--ray {}: origin and direction must be finite, the direction not 0, the reach above 0",
-            ray_text(ray));
-    return ray;
-}
-
-std::string oracle_text(const BruteHit& truth) {
-    if (!truth.hit()) return "no hit";
-    return fmt::format("triangle {} at {:.17g}, u {:.17g}, v {:.17g}, {:.3g} inside its nearest edge",
-                       truth.primitive, truth.t, truth.u, truth.v, truth.inside_by());
-}
-
 ExitCode run_ray(const RenderOptions& options, const CheckOptions& check, const Scene& scene, Device& device,
                  ProgramLibrary& library) {
-    const TraceRay ray = make_ray(check.ray);
+    const TraceRay ray = ray_of_numbers(scene, check.ray);
     const RayCheck answer = check_ray(device, library, scene, ray, options.portable);
-    fmt::print("device   {}\nEmbree   {}\noracle   {}\nverdict  {}\n", hit_text(answer.device),
-               hit_text(answer.embree), oracle_text(answer.truth), outcome_text(answer.outcome));
+    fmt::print("device   {}\nEmbree   {}\noracle   {}\nverdict  {}\n", hit_text(scene, answer.device),
+               hit_text(scene, answer.embree), hit_text(scene, answer.truth), outcome_text(answer.outcome));
     return answer.outcome == Outcome::device_wrong ? ExitCode::check_failed : ExitCode::ok;
 }
 
@@ -159,8 +152,11 @@ ExitCode run_scene(const RenderOptions& options, const CheckOptions& check, cons
         return !is_interrupted();
     });
     progress.finish(result.rendered.total());
-    const ExitCode exit_code =
-        report(check, {result.queues.begin(), result.queues.end()}, "queues", result.rendered.total());
+    const char* const all_right =
+        scene.triangles.empty() ? "Nothing was checked: the scene holds no triangles." : "No hit is wrong.";
+    const ExitCode exit_code = report(
+        check,
+        {{result.queues.begin(), result.queues.end()}, "queues", result.rendered.total(), scene, all_right});
     if (!is_interrupted()) return exit_code;
     log_warning("stopped early: the rays so far were checked");
     return exit_code == ExitCode::ok ? ExitCode::interrupted : exit_code;
@@ -175,9 +171,11 @@ ExitCode run_check(const RenderOptions& options, const CheckOptions& check) {
     if (check.self_test) {
         Device device = open_device(options.device);
         ProgramLibrary library(device, options.local_size);
-        const std::vector<QueueCheck> rows = self_test(device, library, options.portable, check.only);
+        const Scene unmoved;
+        std::vector<QueueCheck> rows = self_test(device, library, options.portable, check.only);
         if (rows.empty()) throw InputError("--case {}: no case of the self-test has such a name", check.only);
-        return report(check, rows, "cases", sum(rows).rays.rays);
+        const uint64_t rays = sum(rows).rays.rays;
+        return report(check, {std::move(rows), "cases", rays, unmoved, "No hit is wrong."});
     }
     const std::filesystem::path file = find_scene_file(options.scene);
     const Scene scene = load_gltf(file);
@@ -202,14 +200,19 @@ void add_check_command(CLI::App& app, ExitCode& exit_code) {
     command->add_option("--case", check->only, "Only the cases of the self-test whose name contains this")
         ->needs(self_test)
         ->group(group);
-    command->add_option("--ray", check->ray, "Check one ray: origin, direction, and its reach in directions")
-        ->delimiter(',')
-        ->expected(7)
-        ->type_name("X,Y,Z,DX,DY,DZ,T")
-        ->excludes(self_test)
-        ->group(group);
+    CLI::Option* const ray =
+        command
+            ->add_option(
+                "--ray", check->ray,
+                "Check one ray: origin (the file's coordinates, m), direction, and its reach in directions")
+            ->delimiter(',')
+            ->expected(7)
+            ->type_name("X,Y,Z,DX,DY,DZ,T")
+            ->excludes(self_test)
+            ->group(group);
     command->add_option("--json", check->json, "Write the numbers to a file (- for standard output)")
         ->type_name("FILE.json|-")
+        ->excludes(ray)
         ->group(group);
     command->callback([options, check, &exit_code] { exit_code = run_check(*options, *check); });
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "reference/ray_text.h"
 
 namespace obscura {
 namespace {
@@ -22,17 +23,22 @@ double unit_in_last_place(float value) {
     return static_cast<double>(next) - static_cast<double>(std::abs(value));
 }
 
+// What a verdict on the device's hit comes to.
+Outcome outcome_of(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::same:
+            return Outcome::same;
+        case Verdict::tie:
+            return Outcome::tie;
+        case Verdict::edge:
+            return Outcome::edge;
+        case Verdict::wrong:
+            return Outcome::device_wrong;
+    }
+    OBSCURA_CHECK(false, "verdict {}", static_cast<int>(verdict));
+}
+
 }  // namespace
-
-std::string hit_text(const TraceHit& hit) {
-    if (hit.primitive == NO_PRIMITIVE) return "no hit";
-    return fmt::format("triangle {} at {:.9g}, u {:.9g}, v {:.9g}", hit.primitive, hit.t, hit.u, hit.v);
-}
-
-std::string ray_text(const TraceRay& ray) {
-    return fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", ray.origin.x, ray.origin.y,
-                       ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z, ray.t_max);
-}
 
 std::string outcome_text(Outcome outcome) {
     switch (outcome) {
@@ -105,14 +111,16 @@ double HitComparison::weight_error(const TraceRay& ray, const BruteHit& exact, s
     return shift * (1 / exact.height[corner] + of_the_sum) + 8 * ROUNDING;
 }
 
-Outcome HitComparison::judge_difference(const TraceRay& ray, const TraceHit& device,
-                                        const TraceHit& embree) const {
-    const auto tolerance = [&](uint32_t primitive) { return position_error(ray, primitive); };
-    const Verdict ours = judge(oracle_, ray, device, tolerance);
-    if (ours == Verdict::wrong) return Outcome::device_wrong;
-    if (ours == Verdict::tie) return Outcome::tie;
-    if (ours == Verdict::edge) return Outcome::edge;
-    return judge(oracle_, ray, embree, tolerance) == Verdict::wrong ? Outcome::embree_wrong : Outcome::same;
+Outcome HitComparison::judge_both(const TraceRay& ray, const TraceHit& device, const TraceHit& embree,
+                                  HitTally& tally) const {
+    const auto verdict_on = [&](const TraceHit& hit) {
+        return judge(oracle_, ray, hit, [&](uint32_t primitive) { return position_error(ray, primitive); });
+    };
+    const Outcome outcome = outcome_of(verdict_on(device));
+    if (verdict_on(embree) != Verdict::wrong) return outcome;
+    if (outcome == Outcome::same) return Outcome::embree_wrong;
+    ++tally.embree_wrong;
+    return outcome;
 }
 
 HitTally HitComparison::compare(std::span<const TraceRay> rays, std::span<const TraceHit> device,
@@ -124,8 +132,9 @@ HitTally HitComparison::compare(std::span<const TraceRay> rays, std::span<const 
         [&](const auto& range, HitTally tally) {
             for (size_t i = range.begin(); i < range.end(); ++i) {
                 const Outcome outcome = compare_one(rays[i], device[i], embree[i], is_drawn(i, every), tally);
-                tally.count(outcome, rays[i],
-                            [&] { return std::pair(hit_text(device[i]), hit_text(embree[i])); });
+                tally.count(outcome, rays[i], [&] {
+                    return std::pair(hit_text(scene_, device[i]), hit_text(scene_, oracle_.closest(rays[i])));
+                });
             }
             return tally;
         },
@@ -141,7 +150,7 @@ Outcome HitComparison::compare_one(const TraceRay& ray, const TraceHit& device, 
     if (device.primitive != NO_PRIMITIVE) ++tally.hits;
     if (judge_anyway || device.primitive != embree.primitive) {
         ++tally.judged;
-        const Outcome outcome = judge_difference(ray, device, embree);
+        const Outcome outcome = judge_both(ray, device, embree, tally);
         if (outcome != Outcome::same || device.primitive != embree.primitive) return outcome;
     }
     return device.primitive == NO_PRIMITIVE ? Outcome::same : compare_errors(ray, device, embree, tally);
@@ -162,9 +171,11 @@ Outcome HitComparison::compare_errors(const TraceRay& ray, const TraceHit& devic
     const double worst_weight = std::max(u_share, v_share);
     tally.weight_share = std::max(tally.weight_share, worst_weight);
 
-    if (!(error <= bound) || !(worst_weight <= 1)) return Outcome::device_wrong;
     const double embree_error = std::abs(static_cast<double>(embree.t) - exact.t);
-    return embree_error <= bound ? Outcome::same : Outcome::embree_wrong;
+    const bool embree_right = embree_error <= bound;
+    if (error <= bound && worst_weight <= 1) return embree_right ? Outcome::same : Outcome::embree_wrong;
+    if (!embree_right) ++tally.embree_wrong;
+    return Outcome::device_wrong;
 }
 
 }  // namespace obscura

@@ -26,9 +26,6 @@ namespace obscura {
 
 enum class Outcome { same, tie, edge, embree_wrong, device_wrong };
 std::string outcome_text(Outcome outcome);
-std::string hit_text(const TraceHit& hit);
-// "ox,oy,oz,dx,dy,dz,t_max", with all digits: what `obscura check --ray` takes.
-std::string ray_text(const TraceRay& ray);
 
 // A ray whose answers are not the same, for the reader of a report.
 struct Disagreement {
@@ -84,9 +81,10 @@ class HitComparison {
     HitTally compare(std::span<const TraceRay> rays, std::span<const TraceHit> device,
                      std::span<const TraceHit> embree, size_t every) const;
 
-    Outcome judge_difference(const TraceRay& ray, const TraceHit& device, const TraceHit& embree) const;
-
   private:
+    // The outcome is the device's, but where Embree alone is wrong; beside another one, Embree's mistake is counted here.
+    Outcome judge_both(const TraceRay& ray, const TraceHit& device, const TraceHit& embree,
+                       HitTally& tally) const;
     Outcome compare_one(const TraceRay& ray, const TraceHit& device, const TraceHit& embree,
                         bool judge_anyway, HitTally& tally) const;
     Outcome compare_errors(const TraceRay& ray, const TraceHit& device, const TraceHit& embree,

@@ -4,6 +4,7 @@
 #include "bvh/bvh.h"
 #include "reference/hard_rays.h"
 #include "reference/meshes.h"
+#include "reference/ray_text.h"
 #include "reference/scene_builder.h"
 #include "wavefront/features.h"
 
@@ -94,7 +95,7 @@ class SelfTest {
         for (size_t i = 0; i < rays.size(); ++i) {
             if ((blocked[i] != 0) == (hits[i].primitive != NO_PRIMITIVE)) continue;
             tally.count(Outcome::device_wrong, rays[i], [&] {
-                return std::pair(std::string(blocked[i] != 0 ? "blocked" : "free"), hit_text(hits[i]));
+                return std::pair(std::string(blocked[i] != 0 ? "blocked" : "free"), hit_text(scene, hits[i]));
             });
         }
         rows_.push_back({name, std::move(tally), {}, aimed});

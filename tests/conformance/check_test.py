@@ -60,19 +60,6 @@ class Check(unittest.TestCase):
         self.assertEqual(numbers["rendered_rays"], numbers["rays"])
         self.assertEqual(0, code)
 
-    def test_one_ray_is_replayed(self):
-        down = [PROGRAM, "check", ROOT / "scenes/cornell", "--quiet", "--ray"]
-        for ray, verdict in (("0.1,1,0.1,0,-1,0,inf", "verdict  the same"), ("0.1,1,0.1,0,1,0,0.001", "device   no hit")):
-            result = subprocess.run([*down, ray], capture_output=True, text=True, check=False)
-            if result.returncode == 3 and os.environ.get("OBSCURA_REQUIRE_DEVICE") != "1":
-                self.skipTest("there is no OpenCL device: " + result.stderr)
-            self.assertEqual(0, result.returncode, result.stderr)
-            self.assertIn(verdict, result.stdout)
-        for ray in ("", "1,2,3", "0,0,0,0,0,0,1", "0,0,0,0,0,1,1,1", "a,0,0,0,0,1,1", "0,0,0,0,0,1,nan"):
-            result = subprocess.run([*down, ray], capture_output=True, text=True, check=False)
-            self.assertEqual(2, result.returncode, ray)
-            self.assertIn("--ray", result.stderr)
-
     def test_scene_or_self_test_not_both(self):
         for arguments in ([], [ROOT / "scenes/cornell", "--self-test"], ["--self-test", "--case", "nothing"]):
             result = subprocess.run([PROGRAM, "check", *arguments], capture_output=True, text=True, check=False)

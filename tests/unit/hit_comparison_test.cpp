@@ -4,12 +4,12 @@
 
 #include "reference/hard_rays.h"
 #include "reference/meshes.h"
+#include "reference/ray_text.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -90,11 +90,21 @@ TEST(RaysJudgedAnyway, AreSpreadOverTheRaysOfAPoint) {
         EXPECT_TRUE(is_drawn(i, 1));
 }
 
-TEST(HitTexts, RayHasAllItsDigits) {
-    EXPECT_EQ(ray_text({{0.1f, 1, 2}, {0, -1, 0}, std::numeric_limits<float>::infinity()}),
-              "0.100000001,1,2,0,-1,0,inf");
-    EXPECT_EQ(hit_text({1, 0.5f, 0.25f, 7}), "triangle 7 at 1, u 0.5, v 0.25");
-    EXPECT_EQ(hit_text({1, 0, 0, NO_PRIMITIVE}), "no hit");
+// Where both tracers are wrong, both are counted, and the oracle says what is right.
+TEST_F(HitComparisonOfSphere, OracleIsExpectedWhereBothAreWrong) {
+    const auto hit = std::ranges::find_if(
+        embree, [](const TraceHit& candidate) { return candidate.primitive != NO_PRIMITIVE; });
+    const TraceRay& ray = rays[static_cast<size_t>(hit - embree.begin())];
+    const TraceHit miss{ray.t_max, 0, 0, NO_PRIMITIVE};
+    TraceHit far_off = *hit;
+    far_off.t *= 1.0001f;
+    for (const auto& [device, other] : {std::pair(miss, miss), {miss, far_off}, {far_off, far_off}}) {
+        const HitTally tally = comparison.compare({&ray, 1}, {&device, 1}, {&other, 1}, 1);
+        EXPECT_EQ(tally.device_wrong, 1u);
+        EXPECT_EQ(tally.embree_wrong, 1u);
+        ASSERT_EQ(tally.disagreements.size(), 1u);
+        EXPECT_EQ(tally.disagreements[0].expected, hit_text(scene, comparison.oracle().closest(ray)));
+    }
 }
 
 }  // namespace
