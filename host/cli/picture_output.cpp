@@ -12,12 +12,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// NAME.exr, NAME-1.exr ... in the folder for temporary files: the first that doesn't exist.
+// NAME.exr, NAME-1.exr ... in the folder for temporary files: the first that doesn't exist. What has no extension, as
+// a device, gets one there.
 fs::path free_rescue_path(const fs::path& path) {
     const fs::path folder = fs::temp_directory_path();
-    fs::path rescue = folder / path.filename();
+    const std::string stem = path.stem().string();
+    const std::string extension = path.has_extension() ? path.extension().string() : ".exr";
+    fs::path rescue = folder / (stem + extension);
     for (int i = 1; fs::exists(rescue); ++i)
-        rescue = folder / fmt::format("{}-{}{}", path.stem().string(), i, path.extension().string());
+        rescue = folder / fmt::format("{}-{}{}", stem, i, extension);
     return rescue;
 }
 

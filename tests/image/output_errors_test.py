@@ -34,14 +34,14 @@ class OutputErrors(unittest.TestCase):
         return self.render("--width", 32, "--height", 24, *arguments)
 
     def test_picture_on_a_full_disk_is_saved_under_a_free_name(self):
-        for name in ("full", "full-1"):
+        for name in ("full.exr", "full-1.exr"):
             result = self.small("-o", "/dev/full", "--stats", self.folder / "stats.json")
             self.assertEqual(2, result.returncode, result.stderr)
             self.assertIn("/dev/full: can't be written: No space left on device; the picture was saved as "
                           f"{self.rescue / name} instead", result.stderr)
             self.assertTrue((self.folder / "stats.json").exists())
         self.small("-o", self.folder / "x.exr")
-        for name in ("full", "full-1"):
+        for name in ("full.exr", "full-1.exr"):
             compared = subprocess.run([PROGRAM, "compare", self.rescue / name, self.folder / "x.exr"], check=False)
             self.assertEqual(0, compared.returncode)
 
