@@ -204,10 +204,13 @@ void add_compare_command(CLI::App& app, ExitCode& exit_code) {
     const auto options = std::make_shared<CompareOptions>();
     CLI::App* command = app.add_subcommand(
         "compare", "Measure how far an image is from a reference; exit code 0 within the bound, 1 beyond it");
-    command->add_option("image", options->image, "The image (EXR)")->required();
-    command->add_option("reference", options->reference, "The reference (EXR)")->required();
+    command->add_option("image", options->image, "The image (EXR)")->required()->type_name("X.exr");
+    command->add_option("reference", options->reference, "The reference (EXR)")
+        ->required()
+        ->type_name("X.exr");
     command
         ->add_option("--layer", options->layer, "A layer's name, beauty, or all, which both images must have")
+        ->type_name("NAME")
         ->capture_default_str();
     command->add_option("--metric", options->metric, "What the bound limits: rmse, relmse, mape or max_abs")
         ->check(CLI::IsMember(METRICS))
@@ -215,8 +218,10 @@ void add_compare_command(CLI::App& app, ExitCode& exit_code) {
     command->add_option("--bound", options->bound, "The largest error allowed; 0 asks for identical bits")
         ->check(number_between(0, static_cast<double>(std::numeric_limits<float>::max())))
         ->capture_default_str();
-    command->add_option("--heatmap", options->heat_map, "Write the relative error per pixel as PNG");
-    command->add_option("--json", options->json, "Write the numbers to a file (- for standard output)");
+    command->add_option("--heatmap", options->heat_map, "Write the relative error per pixel as PNG")
+        ->type_name("X.png");
+    command->add_option("--json", options->json, "Write the numbers to a file (- for standard output)")
+        ->type_name("FILE.json|-");
     command->callback([options, &exit_code] { exit_code = run_compare(*options); });
 }
 

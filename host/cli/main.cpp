@@ -22,6 +22,19 @@
 namespace obscura {
 namespace {
 
+// CLI11 says "--spp: At Most 1 required but received 2", and no more of what is wrong.
+std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) == nullptr) return error.what();
+    for (const CLI::App* command : app.get_subcommands()) {
+        for (const CLI::Option* option : command->get_options()) {
+            if (option->get_expected_max() == 1 && option->count() > 1)
+                return fmt::format("{} is given {}.", option->get_name(),
+                                   option->count() == 2 ? "twice" : fmt::format("{} times", option->count()));
+        }
+    }
+    return error.what();
+}
+
 ExitCode run(int argc, char** argv) {
     CLI::App app("Renders scenes with ray-traced obscurances on any OpenCL device.", "obscura");
     app.set_version_flag("--version", "obscura " OBSCURA_VERSION);
@@ -44,8 +57,9 @@ ExitCode run(int argc, char** argv) {
             return ExitCode::ok;
         }
         const bool unknown_subcommand = app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-';
-        throw InputError("{}\nRun obscura --help, or obscura SUBCOMMAND --help, for more.",
-                         unknown_subcommand ? fmt::format("{} is not a subcommand.", argv[1]) : error.what());
+        throw InputError(
+            "{}\nRun obscura --help, or obscura SUBCOMMAND --help, for more.",
+            unknown_subcommand ? fmt::format("{} is not a subcommand.", argv[1]) : usage_message(app, error));
     }
     return exit_code;
 }

@@ -43,11 +43,13 @@ void add_merge_command(CLI::App& app, ExitCode& exit_code) {
     const auto options = std::make_shared<MergeOptions>();
     CLI::App* command =
         app.add_subcommand("merge", "Merge the parts of one picture (crops) into the whole, exactly");
-    command->add_option("parts", options->parts, "The parts (EXR)")->required();
+    command->add_option("parts", options->parts, "The parts (EXR)")->required()->type_name("X.exr");
     command->add_option("-o,--output,--outfile", options->output, "The whole picture (EXR)")
         ->required()
-        ->check(not_empty());
-    CLI::Option* preview = command->add_option("--preview", options->preview, "Write a preview (PNG) too");
+        ->check(not_empty())
+        ->type_name("X.exr");
+    CLI::Option* preview =
+        command->add_option("--preview", options->preview, "Write a preview (PNG) too")->type_name("X.png");
     command->add_option("--exposure", options->exposure_stops, "The preview's exposure in stops")
         ->needs(preview)
         ->check(exposure_range())

@@ -105,7 +105,7 @@ void add_reference_command(CLI::App& app, ExitCode& exit_code) {
     command
         ->add_option("--sets", own->sets,
                      "Independent sets of --spp samples, with the seeds --seed, --seed + 1 ...")
-        ->check(CLI::Range(1u, MAX_SETS))
+        ->check(whole_number(1, MAX_SETS))
         ->capture_default_str()
         ->group("Reference");
     command->callback(

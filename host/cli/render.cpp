@@ -60,6 +60,9 @@ std::vector<std::string> resolve_layers(std::vector<std::string> wanted) {
     if (wanted == std::vector<std::string>{"none"}) return {};
     std::vector<std::string> layers;
     for (const std::string& name : wanted) {
+        if (name == "all" || name == "none")
+            throw InputError("--layers {}: all and none stand alone, without names of layers",
+                             fmt::join(wanted, ","));
         if (std::ranges::find(known, name) == known.end()) {
             throw InputError("--layers {}: there is no such layer; choose from beauty, {}, or all, or none",
                              name, fmt::join(known, ", "));

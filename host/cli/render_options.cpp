@@ -48,15 +48,15 @@ CLI::Option* add_rgb(CLI::App& command, const std::string& name, std::optional<R
 void add_image_options(CLI::App& command, RenderOptions& o) {
     RenderSettings& s = o.settings;
     command.add_option("--width", s.width, "Pixels across")
-        ->check(CLI::Range(1u, MAX_IMAGE_SIZE))
+        ->check(whole_number(1, MAX_IMAGE_SIZE))
         ->capture_default_str()
         ->group("Picture");
     command.add_option("--height", s.height, "Pixels down")
-        ->check(CLI::Range(1u, MAX_IMAGE_SIZE))
+        ->check(whole_number(1, MAX_IMAGE_SIZE))
         ->capture_default_str()
         ->group("Picture");
     command.add_option("--spp,--samples-per-pixel", s.spp, "Camera rays per pixel")
-        ->check(CLI::Range(1u, MAX_SAMPLES))
+        ->check(whole_number(1, MAX_SAMPLES))
         ->capture_default_str()
         ->group("Picture");
     command.add_option("--camera", s.camera, "Name or number of the scene's camera; the first if not given")
@@ -95,7 +95,7 @@ void add_model_options(CLI::App& command, RenderOptions& o) {
     command
         .add_option("--obscurance-rays,--ao-samples", s.obscurance_rays,
                     "Obscurance rays per diffuse hit (K)")
-        ->check(CLI::Range(1u, MAX_SAMPLES))
+        ->check(whole_number(1, MAX_SAMPLES))
         ->capture_default_str()
         ->group(group);
     command.add_option("--rho,--falloff", o.rho, "Falloff: step|linear|sqrt|cbrt|exp[:lambda]|expjump|pow:p")
@@ -106,26 +106,31 @@ void add_model_options(CLI::App& command, RenderOptions& o) {
                     "Reach of the obscurances: metres, per cent of the scene's diagonal (50%), or inf")
         ->capture_default_str()
         ->group(group);
-    add_choice<Ambient>(
-        command, "--ambient", s.ambient,
-        {{"obscurance", Ambient::obscurance}, {"constant", Ambient::constant}, {"none", Ambient::none}},
-        "Ambient light: weighted by obscurances, constant, or none")
-        ->default_str("obscurance")
-        ->group(group);
+    CLI::Option* const ambient =
+        add_choice<Ambient>(
+            command, "--ambient", s.ambient,
+            {{"obscurance", Ambient::obscurance}, {"constant", Ambient::constant}, {"none", Ambient::none}},
+            "Ambient light: weighted by obscurances, constant, or none")
+            ->default_str("obscurance")
+            ->group(group);
     add_switch(command, "--bleeding", s.bleeding,
                "Colour bleeding: obscurance rays carry the colour they meet")
         ->default_str("on")
         ->group(group);
-    add_rgb(command, "--ambient-light", s.ambient_light,
-            "Ambient radiance at an open point, instead of the scene's")
-        ->group(group);
-    command.add_option("--ambient-scale", s.ambient_scale, "Multiplies the ambient light")
-        ->check(number_between(0, 1e6))
-        ->capture_default_str()
-        ->group(group);
+    CLI::Option* const light = add_rgb(command, "--ambient-light", s.ambient_light,
+                                       "Ambient radiance at an open point, instead of the scene's")
+                                   ->group(group);
+    CLI::Option* const scale =
+        command.add_option("--ambient-scale", s.ambient_scale, "Multiplies the ambient light")
+            ->check(number_between(0, 1e6))
+            ->capture_default_str()
+            ->group(group);
     command
         .add_flag_callback(
             "--no-obscurance", [&s] { s.obscurance = false; }, "Leave out the ambient light")
+        ->excludes(ambient)
+        ->excludes(light)
+        ->excludes(scale)
         ->group(group);
     command
         .add_flag_callback(
@@ -136,11 +141,11 @@ void add_model_options(CLI::App& command, RenderOptions& o) {
             "--no-specular", [&s] { s.specular = false; }, "Leave out reflections and transmission")
         ->group(group);
     command.add_option("--light-samples", s.light_samples, "Shadow rays per hit for each group of lights")
-        ->check(CLI::Range(1u, 4096u))
+        ->check(whole_number(1, 4096))
         ->capture_default_str()
         ->group(group);
     command.add_option("--max-depth", s.max_depth, "Longest chain of reflections")
-        ->check(CLI::Range(0u, 64u))
+        ->check(whole_number(0, 64))
         ->capture_default_str()
         ->group(group);
     add_switch(command, "--roulette", s.roulette,
@@ -168,9 +173,8 @@ void add_device_options(CLI::App& command, RenderOptions& o) {
     command
         .add_option("--device", o.device,
                     "Index, platform:device, or part of the device's or platform's name or version (see "
-                    "obscura devices)")
+                    "obscura devices); the variable OBSCURA_DEVICE if not given")
         ->check(not_empty())
-        ->envname("OBSCURA_DEVICE")
         ->group(WORK_GROUP);
     command.add_option("--memory", o.memory, "Device memory for the queues: bytes, or with K, M, G")
         ->capture_default_str()
@@ -178,12 +182,12 @@ void add_device_options(CLI::App& command, RenderOptions& o) {
     command
         .add_option("--wave-size", o.wave_size,
                     "Camera samples in flight at once; changes speed, not pictures")
-        ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 31))
+        ->check(whole_number(1, uint64_t{1} << 31))
         ->capture_default_str()
         ->group(WORK_GROUP);
     command
         .add_option("--local-size", o.local_size, "Work items per work group; changes speed, not pictures")
-        ->check(CLI::Range(1u, 4096u))
+        ->check(whole_number(1, 4096))
         ->capture_default_str()
         ->group(WORK_GROUP);
     add_choice<NeedsMode>(command, "--needs", o.settings.needs,
@@ -195,6 +199,12 @@ void add_device_options(CLI::App& command, RenderOptions& o) {
         .add_flag("--portable-kernels", o.portable,
                   "One ray per work item, no instruction of one processor; the same pictures, slower on CPUs")
         ->group(WORK_GROUP);
+}
+
+void check_ambient_options(const RenderSettings& settings) {
+    if (settings.ambient != Ambient::none) return;
+    if (settings.ambient_light) throw InputError("--ambient none leaves nothing to --ambient-light");
+    if (settings.ambient_scale != 1) throw InputError("--ambient none leaves nothing to --ambient-scale");
 }
 
 // A pixel's points of one kind are numbered through: spp times those of each camera ray.
@@ -230,6 +240,7 @@ RenderSettings settings_of(const RenderOptions& options) {
     RenderSettings settings = options.settings;
     check_set_size(settings.spp, "--obscurance-rays", settings.obscurance_rays);
     check_set_size(settings.spp, "--light-samples", settings.light_samples);
+    check_ambient_options(settings);
     settings.falloff = parse_falloff(options.rho);
     settings.d_max = parse_max_distance(options.d_max);
     return settings;

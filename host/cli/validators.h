@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <system_error>
 
@@ -31,15 +32,19 @@ inline CLI::Validator not_empty() {
             ""};
 }
 
-// CLI11 reads what is too large for 64 bits as the largest number.
-inline CLI::Validator whole_number() {
-    return {[](const std::string& text) -> std::string {
+// CLI11 reads what is too large for 64 bits as the largest number, and CLI::Range tells of a range where the text is no
+// whole number at all.
+inline CLI::Validator whole_number(uint64_t low = 0, uint64_t high = std::numeric_limits<uint64_t>::max()) {
+    const bool unlimited = high == std::numeric_limits<uint64_t>::max();
+    const std::string last = unlimited ? "2^64 - 1" : fmt::format("{}", high);
+    return {[=](const std::string& text) -> std::string {
                 uint64_t value = 0;
                 const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-                if (error == std::errc() && end == text.data() + text.size()) return {};
-                return fmt::format("{} is not a whole number from 0 to 2^64 - 1", text);
+                const bool whole = error == std::errc() && end == text.data() + text.size();
+                if (whole && value >= low && value <= high) return {};
+                return fmt::format("{} is not a whole number from {} to {}", text, low, last);
             },
-            ""};
+            unlimited ? "" : fmt::format("UINT in [{} - {}]", low, last)};
 }
 
 // Stops of a preview: beyond these every picture is black or white.

@@ -3,6 +3,7 @@
 #include "device/device.h"
 
 #include <cstdlib>
+#include <span>
 #include <utility>
 
 #include "device/error.h"
@@ -24,6 +25,17 @@ cl::Device find_handle(const DeviceInfo& info) {
     if (device_index >= devices.size())
         throw DeviceError("{}: {} is gone since the devices were listed.", STAGE, info.name);
     return devices[device_index];
+}
+
+// Without a selector the environment's choice, which the message names when it is a wrong one.
+int select_named(std::span<const DeviceInfo> devices, std::string_view selector) {
+    const char* const variable = std::getenv("OBSCURA_DEVICE");
+    if (!selector.empty() || variable == nullptr) return select_device(devices, selector);
+    try {
+        return select_device(devices, variable);
+    } catch (const InputError& error) {
+        throw InputError("The environment variable OBSCURA_DEVICE: {}", error.what());
+    }
 }
 
 }  // namespace
@@ -51,10 +63,8 @@ void Device::finish(std::string_view stage) const {
 }
 
 Device open_device(std::string_view selector) {
-    if (const char* const chosen = std::getenv("OBSCURA_DEVICE"); selector.empty() && chosen != nullptr)
-        selector = chosen;
     const std::vector<DeviceInfo> devices = list_devices();
-    const DeviceInfo& info = devices[static_cast<size_t>(select_device(devices, selector))];
+    const DeviceInfo& info = devices[static_cast<size_t>(select_named(devices, selector))];
     return Device(find_handle(info), info);
 }
 
