@@ -87,8 +87,8 @@ Scene load_gltf(const std::filesystem::path& file) {
     Scene& scene = reader.scene;
     scene.bounds = used_bounds(scene);
     if (scene.dropped_triangles > 0)
-        log_warning("{}: {} without area dropped.", reader.file,
-                    counted(scene.dropped_triangles, "triangle"));
+        log_warning("{}: {} without area dropped, beginning with {}.", reader.file,
+                    counted(scene.dropped_triangles, "triangle"), reader.first_dropped);
     if (scene.triangles.empty()) log_warning("{}: the scene holds no triangles.", reader.file);
     if (scene.cameras.empty()) {
         scene.cameras.push_back(default_camera(scene.bounds));

@@ -8,6 +8,7 @@
 
 #include <cstring>
 #include <limits>
+#include <string_view>
 
 namespace obscura {
 
@@ -19,6 +20,8 @@ constexpr size_t GLB_HEADER_BYTES = 12;
 constexpr size_t GLB_CHUNK_HEADER_BYTES = 8;
 // Real files nest about ten deep. tinygltf recurses through extensions and extras.
 constexpr int MAX_JSON_DEPTH = 200;
+constexpr size_t SHORTEST_JSON = 4;  // bytes; tinygltf looks at no less, not even at "{}"
+constexpr std::string_view MISSING_FILE = "File not found : ";  // tinygltf's words
 
 uint32_t load_u32(const std::vector<std::byte>& bytes, size_t offset) {
     uint32_t value = 0;
@@ -113,12 +116,18 @@ tinygltf::FsCallbacks file_callbacks() {
     return callbacks;
 }
 
+void replace_all(std::string& text, const std::string& from, const std::string& to) {
+    for (size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+        text.replace(at, from.size(), to);
+}
+
 // tinygltf's messages, one per line, as one sentence. It calls a skin's inverse bind matrices required,
-// which they are not.
+// which they are not, and passes on the names that its JSON library gives to errors.
 std::string errors_in_one_line(std::string text) {
-    const std::string not_required = "'inverseBindMatrices' property is missing in Skin.\n";
-    for (size_t at = text.find(not_required); at != std::string::npos; at = text.find(not_required))
-        text.erase(at, not_required.size());
+    replace_all(text, "'inverseBindMatrices' property is missing in Skin.\n", "");
+    replace_all(text, "\"asset\" object not found in .gltf or not an object type", "it has no asset object.");
+    if (const size_t end = text.find("] "); text.starts_with("[json.exception.") && end != std::string::npos)
+        text.erase(0, end + 2);
     std::string line;
     for (const char c : text)
         line += c == '\n' ? ' ' : c;
@@ -131,13 +140,15 @@ std::string errors_in_one_line(std::string text) {
 
 tinygltf::Model read_gltf_model(const std::filesystem::path& path) {
     const std::string file = path.string();
-    const std::vector<std::byte> bytes = read_bytes(path);
+    std::vector<std::byte> bytes = read_bytes(path);
+    if (bytes.empty()) throw InputError("{}: the file is empty.", file);
     if (bytes.size() > std::numeric_limits<uint32_t>::max())
         throw InputError("{}: header: glTF files of 4 GiB or more are not supported.", file);
     const bool binary = is_binary(bytes);
     const size_t json_offset = binary ? GLB_HEADER_BYTES + GLB_CHUNK_HEADER_BYTES : 0;
     const size_t json_bytes = binary ? check_glb(file, bytes) : bytes.size();
     check_json_depth(file, bytes.data() + json_offset, json_bytes);
+    if (!binary && bytes.size() < SHORTEST_JSON) bytes.resize(SHORTEST_JSON, std::byte{' '});
 
     tinygltf::TinyGLTF loader;
     loader.SetFsCallbacks(file_callbacks());
@@ -159,6 +170,9 @@ tinygltf::Model read_gltf_model(const std::filesystem::path& path) {
     }
     error = errors_in_one_line(error);
     if (loaded && error.empty()) return model;
+    if (error.starts_with(MISSING_FILE))
+        throw InputError("{}: the file {} that it needs is missing.", file,
+                         error.substr(MISSING_FILE.size()));
     throw InputError("{}: not a valid glTF file: {}", file,
                      error.empty() ? "its structure is broken." : error);
 }

@@ -184,8 +184,8 @@ void append_primitive(GltfReader& reader, const tinygltf::Primitive& primitive, 
         reader.lengths.add(reader.scene, corners);
         if (has_area(reader.scene.vertices, corners))
             reader.scene.triangles.push_back({corners, material, object});
-        else
-            ++reader.scene.dropped_triangles;
+        else if (reader.scene.dropped_triangles++ == 0)
+            reader.first_dropped = fmt::format("{}, triangle {}", place, t);
     }
 }
 

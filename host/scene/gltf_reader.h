@@ -40,6 +40,7 @@ struct GltfReader {
     Notices notices;
     Scene scene;
     LengthRange lengths;                          // of the triangles read so far
+    std::string first_dropped;                    // the place of the first triangle without area
     std::unordered_map<int, uint32_t> materials;  // glTF index (-1: the default) -> Scene::materials
     std::unordered_map<int, int32_t> textures;    // glTF index -> Scene::textures
 

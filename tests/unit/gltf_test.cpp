@@ -241,12 +241,15 @@ TEST(Gltf, TrianglesWithoutAreaAreDroppedAndCounted) {
     const int positions =
         file.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 1, 2, 2, 2}, "VEC3");
     const int indices = file.accessor<uint8_t>({0, 1, 2, 0, 1, 1, 3, 4, 5}, "SCALAR");
-    file.append("nodes", {{"mesh", file.mesh({{"POSITION", positions}}, indices)}});
+    file.append("nodes", {{"mesh", file.mesh({{"POSITION", positions}}, indices)}, {"name", "Floor"}});
     const Loaded loaded = load(file);
     EXPECT_EQ(loaded.scene.triangles.size(), 1u);
     EXPECT_EQ(loaded.scene.dropped_triangles, 2u);
     EXPECT_EQ(loaded.scene.objects[0].triangle_count, 1u);
-    EXPECT_NE(loaded.said.find("2 triangles without area dropped"), std::string::npos) << loaded.said;
+    EXPECT_NE(loaded.said.find("2 triangles without area dropped, beginning with node 'Floor': mesh 'thing' "
+                               "primitive 0, triangle 1.\n"),
+              std::string::npos)
+        << loaded.said;
 }
 
 TEST(Gltf, TextFormWithEitherBufferEqualsBinary) {
