@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <numbers>
@@ -20,6 +21,8 @@
 namespace obscura {
 
 namespace {
+
+constexpr size_t MOST_LIGHTS = 10;  // in the table; the JSON has all
 
 // Everything that is shown, computed once for table and JSON.
 struct SceneInfo {
@@ -78,10 +81,14 @@ Json cameras_json(const Scene& scene) {
 
 Json lights_json(const Scene& scene) {
     Json rows = Json::array();
-    for (const PunctualLight& light : scene.lights)
-        rows.push_back({{"name", light.name},
-                        {"type", type_name(light.type)},
-                        {"intensity", to_json(world_intensity(scene, light))}});
+    for (const PunctualLight& light : scene.lights) {
+        Json row = {{"name", light.name},
+                    {"type", type_name(light.type)},
+                    {"intensity", to_json(world_intensity(scene, light))}};
+        if (light.type != LightType::directional)
+            row["position"] = to_json(world_position(scene, light.position));
+        rows.push_back(row);
+    }
     return rows;
 }
 
@@ -145,12 +152,17 @@ void print_geometry(const SceneInfo& info) {
 void print_lights(const SceneInfo& info) {
     fmt::print("\nLights\n");
     print_row("area lights", "{}", counted(info.emissive_triangles, "emissive triangle"));
-    for (const PunctualLight& light : info.scene.lights) {
-        const char* unit = light.type == LightType::directional ? "W/m^2" : "W/sr";
-        const RgbD intensity = world_intensity(info.scene, light);
-        print_row(type_name(light.type), "{}{} {} (RGB)", light.name.empty() ? "" : light.name + ": ",
-                  fmt::format("{:.5g} {:.5g} {:.5g}", intensity.x, intensity.y, intensity.z), unit);
+    const auto& lights = info.scene.lights;
+    for (size_t i = 0; i < std::min(lights.size(), MOST_LIGHTS); ++i) {
+        const bool directional = lights[i].type == LightType::directional;
+        const RgbD intensity = world_intensity(info.scene, lights[i]);
+        const V3d at = world_position(info.scene, lights[i].position);
+        print_row(type_name(lights[i].type), "{}{:.5g} {:.5g} {:.5g} {} (RGB){}",
+                  lights[i].name.empty() ? "" : lights[i].name + ": ", intensity.x, intensity.y, intensity.z,
+                  directional ? "W/m^2" : "W/sr",
+                  directional ? "" : fmt::format(" at ({:.4g}, {:.4g}, {:.4g})", at.x, at.y, at.z));
     }
+    if (lights.size() > MOST_LIGHTS) print_row("and", "{} more", lights.size() - MOST_LIGHTS);
 }
 
 void print_cameras(const SceneInfo& info) {

@@ -84,6 +84,28 @@ TEST(InfoCommand, TableNamesEachPart) {
         EXPECT_NE(out.find(expected), std::string::npos) << expected << "\nin\n" << out;
 }
 
+// Far from the origin, where the reader moves a scene: positions are the world's all the same.
+TEST(InfoCommand, TableHasTheFirstTenLightsAndTheJsonAll) {
+    const test::TemporaryFolder folder;
+    test::GltfBuilder file;
+    file.add_triangle();
+    file.json["nodes"][0]["translation"] = {1000, 0, 0};
+    file.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 20}}};
+    for (int i = 0; i < 12; ++i)
+        file.append("nodes", {{"name", "lamp"},
+                              {"translation", {1000, i, 0}},
+                              {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    const std::string scene = file.write_glb(folder.file("lamps.glb"));
+    const std::string out = run_command(add_info_command, {"info", scene}).out;
+    EXPECT_NE(out.find("20 20 20 W/sr (RGB) at (1000, 9, 0)\n  and             2 more\n"), std::string::npos)
+        << out;
+    EXPECT_EQ(out.find("(1000, 10, 0)"), std::string::npos) << out;
+    const json lights =
+        json::parse(run_command(add_info_command, {"info", scene, "--json", "-"}).out)["lights"];
+    ASSERT_EQ(lights.size(), 12u);
+    EXPECT_EQ(lights[11]["position"], (json{1000, 11, 0}));
+}
+
 TEST(InfoCommand, BadSceneIsAnInputError) {
     EXPECT_INPUT_ERROR(run_command(add_info_command, {"info", "no/such/scene"}),
                        "no such scene file or folder");
