@@ -16,6 +16,7 @@
 #include "cli/picture_output.h"
 #include "cli/render_options.h"
 #include "cli/validators.h"
+#include "film/attributes.h"
 #include "reference/reference_render.h"
 #include "scene/gltf.h"
 
@@ -47,6 +48,11 @@ void check_integrator(const CLI::App& command, const ReferenceOptions& options) 
     }
 }
 
+bool is_complete(const Image& picture) {
+    const auto found = picture.attributes.find(attribute::COMPLETE);
+    return found != picture.attributes.end() && attribute_text(found->second) == "yes";
+}
+
 ExitCode run_reference(const CLI::App& command, const RenderOptions& options, const ReferenceOptions& own) {
     set_quiet(options.quiet);
     check_integrator(command, own);
@@ -58,8 +64,8 @@ ExitCode run_reference(const CLI::App& command, const RenderOptions& options, co
     catch_interrupts();
     log_info("{}: {}, {}", scene.name, counted(scene.triangles.size(), "triangle"),
              counted(scene.objects.size(), "object"));
-    const reference::ReferenceJob job{scene, settings, own.integrator, own.sets,
-                                      previous ? &*previous : nullptr};
+    const reference::ReferenceJob job{
+        scene, settings, own.integrator, own.sets, previous ? &*previous : nullptr, own.output};
     Progress progress("reference", "path");
     const reference::ReferenceResult result = render_reference(job, [&](double fraction, uint64_t samples) {
         progress.update(fraction, samples);
@@ -68,6 +74,10 @@ ExitCode run_reference(const CLI::App& command, const RenderOptions& options, co
     if (result.image.layers.empty()) {
         log_warning("stopped before every pixel had a sample: nothing is written");
         return ExitCode::interrupted;
+    }
+    if (previous && is_complete(*previous) && result.complete && result.samples == 0) {
+        log_info("{} is complete already: it has all samples of --sets {}", own.output, own.sets);
+        return ExitCode::ok;
     }
     progress.finish(result.samples);
     ignore_interrupts();

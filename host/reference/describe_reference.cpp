@@ -22,9 +22,39 @@ constexpr std::array NOT_OF_PATHS = {
     attribute::BLEEDING,          attribute::OBSCURANCE,      attribute::DIRECT,
     attribute::SPECULAR,          attribute::ROULETTE};
 
-// How far a picture is, which changes when it is continued.
-constexpr std::array PROGRESS = {attribute::SPP, attribute::PLANNED_SPP, attribute::SETS, attribute::COMPLETE,
-                                 attribute::SECONDS};
+// What shapes a picture, and what to say where it differs: in this order, so that a cause comes before what follows from
+// it.
+struct Shaper {
+    const char* attribute;
+    const char* difference;
+};
+constexpr std::array SHAPERS = {
+    Shaper{attribute::SCENE_DIGEST, "from another scene"},
+    Shaper{attribute::SCENE, "from another scene"},
+    Shaper{attribute::REFLECTIVITY, "from another scene"},
+    Shaper{attribute::INTEGRATOR, "with another --integrator"},
+    Shaper{attribute::CAMERA, "with another --camera"},
+    Shaper{attribute::WORLD_TO_CAMERA, "with another --camera"},
+    Shaper{attribute::WORLD_TO_NDC, "with another --camera"},
+    Shaper{attribute::SET_SPP, "with another --spp"},
+    Shaper{attribute::SEED, "with another --seed"},
+    Shaper{attribute::SAMPLER, "with another --sampler"},
+    Shaper{attribute::FILTER, "with another --filter"},
+    Shaper{attribute::BACKGROUND, "with another --background"},
+    Shaper{attribute::OBSCURANCE_RAYS, "with another --obscurance-rays"},
+    Shaper{attribute::LIGHT_SAMPLES, "with another --light-samples"},
+    Shaper{attribute::MAX_DEPTH, "with another --max-depth"},
+    Shaper{attribute::FALLOFF, "with another --rho"},
+    Shaper{attribute::MAX_DISTANCE, "with another --dmax"},
+    Shaper{attribute::AMBIENT, "with another --ambient"},
+    Shaper{attribute::BLEEDING, "with another --bleeding"},
+    Shaper{attribute::OBSCURANCE, "with another --no-obscurance"},
+    Shaper{attribute::DIRECT, "with another --no-direct"},
+    Shaper{attribute::SPECULAR, "with another --no-specular"},
+    Shaper{attribute::ROULETTE, "with another --roulette"},
+    Shaper{attribute::AMBIENT_INTENSITY, "with another --ambient-light or --ambient-scale"},
+    Shaper{attribute::SOFTWARE, "by another version"},
+    Shaper{attribute::DEVICE, "by another tracer"}};
 
 // FNV-1a (Fowler, Noll, Vo), 64 bits.
 template <typename T>
@@ -91,30 +121,38 @@ void describe_progress(uint64_t passes, uint64_t finished_sets, ReferenceResult&
     attributes[attribute::SECONDS] = seconds;
 }
 
-uint64_t passes_to_continue(const Image& previous, const Image& image) {
+uint64_t passes_to_continue(const Image& previous, std::string_view file, const Image& image) {
+    if (!previous.attributes.contains(attribute::INTEGRATOR)) {
+        const bool rendered = previous.attributes.contains(attribute::OBSCURANCE_RAYS);
+        throw InputError("--resume: {} was not made by obscura reference{}", file,
+                         rendered ? ", but by obscura render" : "");
+    }
+    const auto check = [&](const Shaper& shaper) {
+        const auto wanted = image.attributes.find(shaper.attribute);
+        if (wanted == image.attributes.end()) return;  // a path tracer ignores it
+        const auto found = previous.attributes.find(shaper.attribute);
+        if (found == previous.attributes.end())
+            throw InputError("--resume: {}: its header has no {}", file, shaper.attribute);
+        if (stored(found->second) == stored(wanted->second)) return;
+        throw InputError("--resume: {} was made {} ({}: {}, not {})", file, shaper.difference,
+                         shaper.attribute, attribute_text(found->second), attribute_text(wanted->second));
+    };
+    check(SHAPERS.front());
     const auto window = [](const Image& i) {
         return fmt::format("{} x {}, columns {} to {}, rows {} to {}", i.full_width, i.full_height, i.x0,
                            i.x1, i.y0, i.y1);
     };
     if (window(previous) != window(image))
-        throw InputError("--resume: the picture has the pixels {}, not {}", window(previous), window(image));
-    for (const auto& [name, value] : image.attributes) {
-        if (std::ranges::find(PROGRESS, name) != PROGRESS.end()) continue;
-        const auto found = previous.attributes.find(name);
-        if (found == previous.attributes.end()) {
-            throw InputError("--resume: the picture's header has no {}, so it is none of this command's",
-                             name);
-        }
-        if (stored(found->second) == stored(value)) continue;
-        throw InputError("--resume: the picture's {} is {}, not {}", name, attribute_text(found->second),
-                         attribute_text(value));
-    }
+        throw InputError(
+            "--resume: {} was made with another --width, --height or --cropwindow (pixels: {}, not {})", file,
+            window(previous), window(image));
+    std::ranges::for_each(SHAPERS, check);
     const auto passes = previous.attributes.find(attribute::SPP);
     const auto seconds = previous.attributes.find(attribute::SECONDS);
     const auto end = previous.attributes.end();
     if (passes == end || !std::holds_alternative<int64_t>(passes->second) || seconds == end ||
         !std::holds_alternative<double>(seconds->second) || std::get<int64_t>(passes->second) < 1) {
-        throw InputError("--resume: the picture's header doesn't tell how far it is");
+        throw InputError("--resume: {}: its header doesn't tell how far it is", file);
     }
     return static_cast<uint64_t>(std::get<int64_t>(passes->second));
 }

@@ -24,7 +24,7 @@ void describe_progress(uint64_t passes, uint64_t finished_sets, ReferenceResult&
                        const Image* previous);
 
 // The passes of the previous picture, made in the same way as this one whose pixels are still to come. Throws InputError
-// that names what differs.
-uint64_t passes_to_continue(const Image& previous, const Image& image);
+// that names the file and the option that differs.
+uint64_t passes_to_continue(const Image& previous, std::string_view file, const Image& image);
 
 }  // namespace obscura::reference

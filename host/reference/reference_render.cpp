@@ -81,13 +81,13 @@ ReferenceResult render_reference(const ReferenceJob& job, const ReferenceCallbac
     const uint64_t planned = uint64_t{settings.spp} * job.sets;
     Accumulator accumulator(rect.pixel_count(), settings.spp);
     if (job.previous != nullptr) {
-        const uint64_t passes = passes_to_continue(*job.previous, result.image);
+        const uint64_t passes = passes_to_continue(*job.previous, job.previous_file, result.image);
         if (!accumulator.restore(*job.previous, passes))
-            throw InputError("--resume: the picture holds no sums to go on with");
+            throw InputError("--resume: {} holds no sums to go on with", job.previous_file);
         if (passes > planned) {
             throw InputError(
-                "--resume: the picture has {} samples per pixel already, more than the {} of {} sets", passes,
-                planned, job.sets);
+                "--resume: {} has {} samples per pixel already, more than the {} of --sets {} of --spp {}",
+                job.previous_file, passes, planned, job.sets, settings.spp);
         }
     }
 

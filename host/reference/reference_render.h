@@ -9,6 +9,7 @@
 #include "scene/settings.h"
 
 #include <functional>
+#include <string_view>
 
 namespace obscura::reference {
 
@@ -17,7 +18,8 @@ struct ReferenceJob {
     RenderSettings settings;  // spp samples of each pixel make a set; set i has the seed settings.seed + i
     IntegratorKind integrator = IntegratorKind::obscurance;
     uint32_t sets = 1;
-    const Image* previous = nullptr;  // a picture to go on with, or none
+    const Image* previous = nullptr;      // a picture to go on with, or none
+    std::string_view previous_file = {};  // its name, for messages
 };
 
 struct ReferenceResult {

@@ -135,12 +135,13 @@ class ReferenceCommand(unittest.TestCase):
     def test_resume_refuses_what_was_made_differently(self):
         picture = (self.folder / "base.exr").read_bytes()
         (self.folder / "old.exr").write_bytes(picture)
-        cases = [["--seed", "1"], ["--spp", "8"], ["--width", "23"], ["--integrator", "path"], ["--rho", "sqrt"],
-                 ["--camera", "side"], ["--ambient-scale", "2"], ["--sets", "2"]]
-        for arguments in cases:
+        changes = [value for spellings, value in CHANGES_PICTURE.items() if spellings not in OF_THE_FILE]
+        changes += [["--integrator", "path"], ["--width", "23"], ["--cropwindow", "0,0.5,0,1"], ["--sets", "2"]]
+        for arguments in changes:
             with self.subTest(" ".join(arguments)):
                 result = self.reference("old", "--resume", *arguments, code=2)
-                self.assertIn("--resume: the picture", result.stderr)
+                self.assertRegex(result.stderr, f"--resume: {self.folder / 'old.exr'} (was made with another|has) .*"
+                                                f"{arguments[0]}\\b")
                 self.assertEqual(picture, (self.folder / "old.exr").read_bytes())
 
     def test_resume_refuses_another_scene_and_no_picture(self):
@@ -153,11 +154,26 @@ class ReferenceCommand(unittest.TestCase):
         (other / "room.gltf").write_text(json.dumps(moved), encoding="utf-8")
         result = obscura("reference", other / "room.gltf", "-o", self.folder / "old.exr", *SMALL, "--resume")
         self.assertEqual(2, result.returncode, result.stderr)
-        self.assertIn("--resume: the picture's ", result.stderr)
+        self.assertIn(f"--resume: {self.folder / 'old.exr'} was made from another scene", result.stderr)
         self.reference("missing", "--resume", code=2)
         rendered = self.folder / "text.exr"
         rendered.write_text("no picture", encoding="utf-8")
         self.reference("text", "--resume", code=2)
+
+    def test_resume_leaves_a_complete_picture_as_it_is(self):
+        picture = (self.folder / "base.exr").read_bytes()
+        (self.folder / "done.exr").write_bytes(picture)
+        result = self.reference("done", "--resume")
+        self.assertIn("done.exr is complete already", result.stderr)
+        self.assertNotIn("wrote", result.stderr)
+        self.assertEqual(picture, (self.folder / "done.exr").read_bytes())
+
+    def test_resume_refuses_a_picture_of_render(self):
+        rendered = obscura("render", self.scene, "-o", self.folder / "rendered.exr", *SMALL[:-2])
+        if rendered.returncode == 3 and os.environ.get("OBSCURA_REQUIRE_DEVICE") != "1":
+            self.skipTest("there is no OpenCL device: " + rendered.stderr)
+        result = self.reference("rendered", "--resume", code=2)
+        self.assertIn("was not made by obscura reference, but by obscura render", result.stderr)
 
     def test_interruption_saves_and_resume_ends_with_the_unbroken_picture(self):
         command = [PROGRAM, "reference", self.scene, "-o", self.folder / "stopped.exr", *SMALL[:-1], str(1 << 20)]
