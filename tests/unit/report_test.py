@@ -74,7 +74,7 @@ class Oracles(unittest.TestCase):
     def test_missing_table_names_its_source(self):
         code, said, _ = self.report(None)
         self.assertEqual(1, code)
-        self.assertIn("tools/test -R Oracle writes it", said)
+        self.assertIn("tools/test -R Oracle.Owen writes it", said)
 
 
 if __name__ == "__main__":
