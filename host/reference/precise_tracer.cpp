@@ -133,7 +133,7 @@ double box_padding(const Scene& scene) {
         include(V3d(vertex.position));
     for (const Camera& camera : scene.cameras)
         include(camera.camera_to_world.translation());
-    return 0x1p-21 * std::min(largest, double{EMBREE_LARGEST});
+    return 0x1p-21 * std::min(largest, static_cast<double>(EMBREE_LARGEST));
 }
 
 }  // namespace

@@ -19,8 +19,10 @@ constexpr double SHORTEST_DIRECTION = 1e-18;
 std::string world_coordinate(const Scene& scene, const V3f& position, int axis) {
     if (scene.origin[axis] == 0)
         return fmt::format("{:.9g}", scene.unit * static_cast<double>(position[axis]));
-    const long double sum = static_cast<long double>(scene.unit) * position[axis] + scene.origin[axis];
-    return fmt::format("{:.{}g}", sum, std::numeric_limits<long double>::max_digits10);
+    using Wide = long double;
+    const Wide sum = static_cast<Wide>(scene.unit) * static_cast<Wide>(position[axis]) +
+                     static_cast<Wide>(scene.origin[axis]);
+    return fmt::format("{:.{}g}", sum, std::numeric_limits<Wide>::max_digits10);
 }
 
 bool is_within_reach(const V3d& position) {
@@ -43,7 +45,8 @@ TraceRay ray_of_numbers(const Scene& scene, std::span<const long double> numbers
     TraceRay ray{};
     for (int axis = 0; axis < 3; ++axis) {
         const auto i = static_cast<size_t>(axis);
-        ray.origin[axis] = static_cast<float>((numbers[i] - scene.origin[axis]) / unit);
+        ray.origin[axis] =
+            static_cast<float>((numbers[i] - static_cast<long double>(scene.origin[axis])) / unit);
         ray.direction[axis] = static_cast<float>(numbers[3 + i]);
     }
     ray.t_max = static_cast<float>(numbers[6] / unit);

@@ -68,11 +68,14 @@ TEST(RayText, IsReadBackToTheBit) {
 }
 
 TEST(RayText, RefusesWhatFloatsOrEmbreeCannotTrace) {
+    constexpr long double ENDLESS = std::numeric_limits<long double>::infinity();
     constexpr long double NAN_VALUE = std::numeric_limits<long double>::quiet_NaN();
     const std::vector<std::vector<long double>> wrong{
-        {3e18L, 0, 0, 0, 0, 1, 1},       {0, -INF, 0, 0, 0, 1, 1},     {0, 0, NAN_VALUE, 0, 0, 1, 1},
-        {0, 0, 0, 0, 0, 0, 1},           {0, 0, 0, 0, 0, 1e-38L, INF}, {0, 0, 0, 0, 3e18L, 0, INF},
-        {0, 0, 0, 1, NAN_VALUE, 0, INF}, {0, 0, 0, 0, 0, 1, 0},        {0, 0, 0, 0, 0, 1, NAN_VALUE}};
+        {3e18L, 0, 0, 0, 0, 1, 1},           {0, -ENDLESS, 0, 0, 0, 1, 1},
+        {0, 0, NAN_VALUE, 0, 0, 1, 1},       {0, 0, 0, 0, 0, 0, 1},
+        {0, 0, 0, 0, 0, 1e-38L, ENDLESS},    {0, 0, 0, 0, 3e18L, 0, ENDLESS},
+        {0, 0, 0, 1, NAN_VALUE, 0, ENDLESS}, {0, 0, 0, 0, 0, 1, 0},
+        {0, 0, 0, 0, 0, 1, NAN_VALUE}};
     for (const std::vector<long double>& numbers : wrong)
         EXPECT_INPUT_ERROR(ray_of_numbers(Scene(), numbers), "--ray");
     // What counts is the scene's own frame.
@@ -80,7 +83,8 @@ TEST(RayText, RefusesWhatFloatsOrEmbreeCannotTrace) {
     EXPECT_THROW(ray_of_numbers(framed({0, 0, 0}, 0x1p-60), std::vector<long double>{2, 0, 0, 0, 0, 1, 1}),
                  InputError);
     for (const long double length : {2e-18L, 0.9e18L})
-        EXPECT_NO_THROW(ray_of_numbers(Scene(), std::vector<long double>{1e18L, 0, 0, 0, 0, length, INF}));
+        EXPECT_NO_THROW(
+            ray_of_numbers(Scene(), std::vector<long double>{1e18L, 0, 0, 0, 0, length, ENDLESS}));
 }
 
 }  // namespace
