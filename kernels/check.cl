@@ -38,12 +38,7 @@ kernel void trace_rays(global const BvhNode* nodes, global const TriangleBlock* 
     const Share share = share_of_group(count);
     RayStream stream;
     for (uint first = share.first; first < share.last; first += stream.count) {
-        add_packed_rays(&stream, rays, first, share.last);
-        if (any_hit != 0u) {
-            trace_stream(nodes, blocks, &stream, true);
-        } else {
-            trace_stream(nodes, blocks, &stream, false);
-        }
+        trace_packed_rays(nodes, blocks, rays, first, share.last, any_hit != 0u, &stream);
         for (uint ray = 0u; ray < stream.count; ++ray) {
             const Hit hit = stream.hits[ray];
             hits[first + ray] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));

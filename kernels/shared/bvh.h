@@ -35,8 +35,8 @@ typedef struct BvhNode {
 // 160 bytes. Four triangles, structure of arrays: row 3 * vertex + axis.
 typedef struct TriangleBlock {
     f32x4 vertex[9];
-    u32x4
-        primitive;  // triangle indices in the scene, with PRIMITIVE_PANE; NO_PRIMITIVE = empty slot (vertices all zero)
+    // Triangle indices in the scene, with PRIMITIVE_PANE; NO_PRIMITIVE = empty slot (vertices all zero).
+    u32x4 primitive;
 } TriangleBlock;
 
 #ifdef __cplusplus
