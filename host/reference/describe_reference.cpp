@@ -56,6 +56,10 @@ constexpr std::array SHAPERS = {
     Shaper{attribute::SOFTWARE, "by another version"},
     Shaper{attribute::DEVICE, "by another tracer"}};
 
+// How far a picture is, which changes when it is continued.
+constexpr std::array PROGRESS = {attribute::SPP, attribute::PLANNED_SPP, attribute::SETS, attribute::COMPLETE,
+                                 attribute::SECONDS};
+
 // FNV-1a (Fowler, Noll, Vo), 64 bits.
 template <typename T>
 void add_bytes(uint64_t& hash, const std::vector<T>& values) {
@@ -147,6 +151,9 @@ uint64_t passes_to_continue(const Image& previous, std::string_view file, const 
             "--resume: {} was made with another --width, --height or --cropwindow (pixels: {}, not {})", file,
             window(previous), window(image));
     std::ranges::for_each(SHAPERS, check);
+    // And whatever else the header tells of, now or one day.
+    for (const auto& [name, value] : image.attributes)
+        if (std::ranges::find(PROGRESS, name) == PROGRESS.end()) check({name.c_str(), "otherwise"});
     const auto passes = previous.attributes.find(attribute::SPP);
     const auto seconds = previous.attributes.find(attribute::SECONDS);
     const auto end = previous.attributes.end();
