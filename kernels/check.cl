@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `obscura check` asks the device: the stages' own functions, with their results where the host can see them.
 #include "lib/obscurance_ray.clh"
+#include "lib/obscurance_result.clh"
 
 // The K rays of the first point_count points, and the nearest hits that count: lanes of K * point_count items, direction k
 // of point i being item K i + k.
@@ -42,6 +43,31 @@ kernel void trace_rays(global const BvhNode* nodes, global const TriangleBlock* 
         for (uint ray = 0u; ray < stream.count; ++ray) {
             const Hit hit = stream.hits[ray];
             hits[first + ray] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
+        }
+    }
+}
+
+// What obscurance rays bring back. rays: as above; starts: each origin - point; out, lanes of count: the nearest hits as
+// above, then rgb and the same without colours.
+kernel void obscurance_results(global const Frame* frame, global const BvhNode* nodes,
+                               global const TriangleBlock* blocks, global const SceneTriangle* triangles,
+                               global const SceneMaterial* materials, global const uchar4* texels,
+                               global const float* tables, global const float4* rays,
+                               global const float4* starts, global float4* out, uint count) {
+    const Share share = share_of_group(count);
+    RayStream stream;
+    for (uint first = share.first; first < share.last; first += stream.count) {
+        trace_packed_rays(nodes, blocks, rays, first, share.last, false, &stream);
+        for (uint ray = 0u; ray < stream.count; ++ray) {
+            const uint i = first + ray;
+            const Hit hit = stream.hits[ray];
+            const float3 start = starts[i].xyz;
+            bool overflow = false;
+            const float4 result =
+                trace_obscurance(frame, nodes, blocks, triangles, materials, texels, tables,
+                                 rays[2u * i].xyz - start, start, stream.directions[ray], hit, &overflow);
+            out[i] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
+            out[count + i] = overflow ? (float4)(NAN) : result;
         }
     }
 }

@@ -17,6 +17,7 @@
 #include "cli/output_paths.h"
 #include "cli/render_options.h"
 #include "reference/check.h"
+#include "reference/ray_replay.h"
 #include "reference/ray_text.h"
 #include "reference/self_test.h"
 #include "scene/gltf.h"
@@ -26,7 +27,8 @@ namespace {
 
 struct CheckOptions {
     std::string json;
-    std::vector<long double> ray;  // origin, direction, reach
+    std::vector<long double>
+        ray;  // origin, direction, reach; of an obscurance ray also the origin beside its point
     bool self_test = false;
     std::string only;  // cases of the self-test
 };
@@ -48,7 +50,7 @@ Json to_json(const HitTally& tally) {
 // What was checked, and how to tell it.
 struct Checked {
     std::vector<QueueCheck> rows;
-    const char* title;  // what the rows are
+    bool is_self_test;  // the rows are its cases, else queues
     uint64_t rendered_rays;
     const Scene& scene;     // whose frame the rays are in
     const char* all_right;  // the verdict
@@ -78,11 +80,12 @@ Json to_json(const Checked& checked) {
         numbers["disagreements"] = Json::array();
         for (const Disagreement& ray : row.rays.disagreements) {
             numbers["disagreements"].push_back({{"outcome", outcome_text(ray.outcome)},
-                                                {"ray", ray_text(checked.scene, ray.ray)},
+                                                {"ray", ray_text(checked.scene, {ray.ray, ray.start})},
+                                                {"severity", ray.severity},
                                                 {"device", ray.device},
                                                 {"expected", ray.expected}});
         }
-        json[checked.title][row.name] = std::move(numbers);
+        json[checked.is_self_test ? "cases" : "queues"][row.name] = std::move(numbers);
     }
     return json;
 }
@@ -113,8 +116,9 @@ void print_failures(const Checked& checked) {
             fmt::print("{}: more than {} of the rays are in doubt\n", row.name, MAX_DOUBTFUL_SHARE);
         for (const Disagreement& ray : row.rays.disagreements) {
             if (ray.outcome != Outcome::device_wrong) continue;
-            fmt::print("{}: device {}; expected {}\n    --ray={}\n", row.name, ray.device, ray.expected,
-                       ray_text(checked.scene, ray.ray));
+            fmt::print("{}: device {}; expected {}\n    {}--ray={}\n", row.name, ray.device, ray.expected,
+                       checked.is_self_test ? fmt::format("--case='{}' ", row.name) : "",
+                       ray_text(checked.scene, {ray.ray, ray.start}));
         }
     }
 }
@@ -123,7 +127,7 @@ void print_failures(const Checked& checked) {
 ExitCode report(const CheckOptions& options, const Checked& checked) {
     const bool passed = std::ranges::all_of(checked.rows, &QueueCheck::passes);
     if (options.json.empty()) {
-        print_table(checked.rows, checked.title);
+        print_table(checked.rows, checked.is_self_test ? "cases" : "queues");
         print_failures(checked);
         fmt::print("{}\n", passed ? checked.all_right : "The check failed.");
     } else {
@@ -132,21 +136,26 @@ ExitCode report(const CheckOptions& options, const Checked& checked) {
     return passed ? ExitCode::ok : ExitCode::check_failed;
 }
 
-ExitCode run_ray(const RenderOptions& options, const CheckOptions& check, const Scene& scene, Device& device,
-                 ProgramLibrary& library) {
-    const TraceRay ray = ray_of_numbers(scene, check.ray);
-    const RayCheck answer = check_ray(device, library, scene, ray, options.portable);
+ExitCode run_ray(const RenderJob& job, const CheckOptions& check, Device& device, ProgramLibrary& library) {
+    const Scene& scene = job.scene;
+    const GivenRay given = ray_of_numbers(scene, check.ray);
+    const RayCheck answer = replay_ray(device, library, job, given);
     fmt::print("device   {}\nEmbree   {}\noracle   {}\nverdict  {}\n", hit_text(scene, answer.device),
                hit_text(scene, answer.embree), hit_text(scene, answer.truth), outcome_text(answer.outcome));
-    return answer.outcome == Outcome::device_wrong ? ExitCode::check_failed : ExitCode::ok;
+    if (answer.result) {
+        fmt::print("{}\ndevice   {}\nexpected {}\nverdict  {}\n",
+                   given.start ? "What it brings back as an obscurance ray:"
+                               : "Light that comes through, as for a shadow ray:",
+                   result_text(answer.result->given), result_text(answer.result->expected),
+                   outcome_text(answer.result->outcome));
+    }
+    return answer.is_device_wrong() ? ExitCode::check_failed : ExitCode::ok;
 }
 
-ExitCode run_scene(const RenderOptions& options, const CheckOptions& check, const Scene& scene,
-                   Device& device, ProgramLibrary& library) {
+ExitCode run_scene(const RenderJob& job, const CheckOptions& check, Device& device, ProgramLibrary& library) {
+    const Scene& scene = job.scene;
     catch_interrupts();
     Progress progress("check", "ray");
-    const RenderJob job{
-        scene, settings_of(options), {}, parse_bytes(options.memory), options.wave_size, options.portable};
     const SceneCheck result = check_scene(device, library, job, [&](double fraction, const RayCounts& rays) {
         progress.update(fraction, rays.total());
         return !is_interrupted();
@@ -156,10 +165,31 @@ ExitCode run_scene(const RenderOptions& options, const CheckOptions& check, cons
         scene.triangles.empty() ? "Nothing was checked: the scene holds no triangles." : "No hit is wrong.";
     const ExitCode exit_code = report(
         check,
-        {{result.queues.begin(), result.queues.end()}, "queues", result.rendered.total(), scene, all_right});
+        {{result.queues.begin(), result.queues.end()}, false, result.rendered.total(), scene, all_right});
     if (!is_interrupted()) return exit_code;
     log_warning("stopped early: the rays so far were checked");
     return exit_code == ExitCode::ok ? ExitCode::interrupted : exit_code;
+}
+
+ExitCode run_self_test(const RenderOptions& options, const CheckOptions& check) {
+    Device device = open_device(options.device);
+    ProgramLibrary library(device, options.local_size);
+    if (check.ray.empty()) {
+        const Scene unmoved;
+        std::vector<QueueCheck> rows = self_test(device, library, options.portable, check.only);
+        if (rows.empty()) throw InputError("--case {}: no case of the self-test has such a name", check.only);
+        const uint64_t rays = sum(rows).rays.rays;
+        return report(check, {std::move(rows), true, rays, unmoved, "No hit is wrong."});
+    }
+    ExitCode exit_code = ExitCode::ok;
+    const auto replay = [&](const Scene& scene, const RenderSettings& settings) {
+        RenderJob job{scene, settings, {}};
+        job.portable = options.portable;
+        exit_code = run_ray(job, check, device, library);
+    };
+    if (!with_self_test_case(check.only, replay))
+        throw InputError("--case {}: with --ray, the whole name of a case of the self-test", check.only);
+    return exit_code;
 }
 
 ExitCode run_check(const RenderOptions& options, const CheckOptions& check) {
@@ -168,21 +198,14 @@ ExitCode run_check(const RenderOptions& options, const CheckOptions& check) {
         throw InputError(check.self_test ? "--self-test takes no scene"
                                          : "A scene is needed, or --self-test");
     check_outputs({{"--json", check.json}}, {options.scene});
-    if (check.self_test) {
-        Device device = open_device(options.device);
-        ProgramLibrary library(device, options.local_size);
-        const Scene unmoved;
-        std::vector<QueueCheck> rows = self_test(device, library, options.portable, check.only);
-        if (rows.empty()) throw InputError("--case {}: no case of the self-test has such a name", check.only);
-        const uint64_t rays = sum(rows).rays.rays;
-        return report(check, {std::move(rows), "cases", rays, unmoved, "No hit is wrong."});
-    }
+    if (check.self_test) return run_self_test(options, check);
     const std::filesystem::path file = find_scene_file(options.scene);
     const Scene scene = load_gltf(file);
     Device device = open_device(options.device);
     ProgramLibrary library(device, options.local_size);
-    return check.ray.empty() ? run_scene(options, check, scene, device, library)
-                             : run_ray(options, check, scene, device, library);
+    const RenderJob job{
+        scene, settings_of(options), {}, parse_bytes(options.memory), options.wave_size, options.portable};
+    return check.ray.empty() ? run_scene(job, check, device, library) : run_ray(job, check, device, library);
 }
 
 }  // namespace
@@ -204,11 +227,12 @@ void add_check_command(CLI::App& app, ExitCode& exit_code) {
         command
             ->add_option(
                 "--ray", check->ray,
-                "Check one ray: origin (the file's coordinates, m), direction, and its reach in directions")
+                "Check one ray: origin (the file's coordinates, m), direction, its reach in directions, and "
+                "of "
+                "an obscurance ray the origin minus its point; with --self-test in the scene of --case")
             ->delimiter(',')
-            ->expected(7)
-            ->type_name("X,Y,Z,DX,DY,DZ,T")
-            ->excludes(self_test)
+            ->expected(7, 10)
+            ->type_name("X,Y,Z,DX,DY,DZ,T[,SX,SY,SZ]")
             ->group(group);
     command->add_option("--json", check->json, "Write the numbers to a file (- for standard output)")
         ->type_name("FILE.json|-")

@@ -9,10 +9,6 @@ namespace {
 
 enum QueueIndex : size_t { CAMERA, SHADOW, GLOSSY, OBSCURANCE };
 
-std::string trace_options(bool portable) {
-    return stage_options(Stage::trace, {}, false, portable);
-}
-
 }  // namespace
 
 bool QueueCheck::passes() const {
@@ -25,7 +21,8 @@ SceneCheck check_scene(Device& device, ProgramLibrary& library, RenderJob job,
                        const RenderCallback& after_wave) {
     const HitComparison hits(job.scene);
     const ResultComparison results(job.scene, job.settings, hits);
-    RayCapture capture(device, library, build_bvh(job.scene), trace_options(job.portable));
+    RayCapture capture(device, library, build_bvh(job.scene),
+                       stage_options(Stage::trace, {}, false, job.portable));
     // The oracle tries every triangle: as many tests as a few for every ray.
     const size_t every = 1 + job.scene.triangles.size() / 4;
 
@@ -47,19 +44,6 @@ SceneCheck check_scene(Device& device, ProgramLibrary& library, RenderJob job,
         obscurance.results.add(results.obscurance(rays, frame, every, obscurance.rays));
     };
     check.rendered = render_scene(device, library, job, after_wave).rays;
-    return check;
-}
-
-RayCheck check_ray(Device& device, ProgramLibrary& library, const Scene& scene, const TraceRay& ray,
-                   bool portable) {
-    const HitComparison hits(scene);
-    const DeviceTracer tracer(device, library, build_bvh(scene), trace_options(portable));
-    RayCheck check;
-    check.device = tracer.closest({&ray, 1}).front();
-    hits.embree().closest({&ray, 1}, {&check.embree, 1});
-    check.truth = hits.oracle().closest(ray);
-    const HitTally tally = hits.compare({&ray, 1}, {&check.device, 1}, {&check.embree, 1}, 1);
-    check.outcome = tally.disagreements.empty() ? Outcome::same : tally.disagreements.front().outcome;
     return check;
 }
 

@@ -34,13 +34,4 @@ struct SceneCheck {
 SceneCheck check_scene(Device& device, ProgramLibrary& library, RenderJob job,
                        const RenderCallback& after_wave);
 
-// One ray, as the device, Embree and the oracle see it.
-struct RayCheck {
-    TraceHit device, embree;
-    BruteHit truth;
-    Outcome outcome;
-};
-RayCheck check_ray(Device& device, ProgramLibrary& library, const Scene& scene, const TraceRay& ray,
-                   bool portable);
-
 }  // namespace obscura

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -70,9 +72,25 @@ uint64_t* HitTally::count_of(Outcome outcome) {
     return outcome == Outcome::embree_wrong ? &embree_wrong : &device_wrong;
 }
 
-bool HitTally::keeps(Outcome outcome) const {
-    const auto kept = std::ranges::count(disagreements, outcome, &Disagreement::outcome);
-    return static_cast<size_t>(kept) < KEPT_DISAGREEMENTS;
+bool HitTally::is_among_worst(Outcome outcome, double severity) const {
+    const auto as_bad = [&](const Disagreement& kept) {
+        return kept.outcome == outcome && kept.severity >= severity;
+    };
+    return static_cast<size_t>(std::ranges::count_if(disagreements, as_bad)) < KEPT_DISAGREEMENTS;
+}
+
+// Of equally bad ones the first come first.
+void HitTally::keep(Disagreement disagreement) {
+    const Outcome outcome = disagreement.outcome;
+    const auto place = std::ranges::upper_bound(disagreements, disagreement.severity, std::greater{},
+                                                &Disagreement::severity);
+    disagreements.insert(place, std::move(disagreement));
+    if (std::ranges::count(disagreements, outcome, &Disagreement::outcome) <=
+        static_cast<ptrdiff_t>(KEPT_DISAGREEMENTS))
+        return;
+    const auto least = std::find_if(disagreements.rbegin(), disagreements.rend(),
+                                    [&](const Disagreement& kept) { return kept.outcome == outcome; });
+    disagreements.erase(std::next(least).base());
 }
 
 void HitTally::add(const HitTally& other) {
@@ -88,7 +106,7 @@ void HitTally::add(const HitTally& other) {
     distance_relative = std::max(distance_relative, other.distance_relative);
     distance_ulps = std::max(distance_ulps, other.distance_ulps);
     for (const Disagreement& ray : other.disagreements)
-        if (keeps(ray.outcome)) disagreements.push_back(ray);
+        if (is_among_worst(ray.outcome, ray.severity)) keep(ray);
 }
 
 double HitComparison::position_error(const TraceRay& ray, uint32_t primitive) const {
@@ -111,16 +129,24 @@ double HitComparison::weight_error(const TraceRay& ray, const BruteHit& exact, s
     return shift * (1 / exact.height[corner] + of_the_sum) + 8 * ROUNDING;
 }
 
-Outcome HitComparison::judge_both(const TraceRay& ray, const TraceHit& device, const TraceHit& embree,
-                                  HitTally& tally) const {
-    const auto verdict_on = [&](const TraceHit& hit) {
-        return judge(oracle_, ray, hit, [&](uint32_t primitive) { return position_error(ray, primitive); });
-    };
-    const Outcome outcome = outcome_of(verdict_on(device));
-    if (verdict_on(embree) != Verdict::wrong) return outcome;
-    if (outcome == Outcome::same) return Outcome::embree_wrong;
-    ++tally.embree_wrong;
-    return outcome;
+Verdict HitComparison::verdict_on(const TraceRay& ray, const TraceHit& hit) const {
+    return judge(oracle_, ray, hit, [&](uint32_t primitive) { return position_error(ray, primitive); });
+}
+
+// How far the device's hit is from the truth.
+double HitComparison::severity(const TraceRay& ray, const TraceHit& device) const {
+    const BruteHit truth = oracle_.closest(ray);
+    const bool is_miss = device.primitive == NO_PRIMITIVE;
+    if (is_miss && !truth.hit()) return 0;
+    if (is_miss || !truth.hit()) return std::numeric_limits<double>::infinity();
+    double worst = std::abs(static_cast<double>(device.t) - truth.t) / distance_error(ray, truth);
+    if (device.primitive == truth.primitive) {
+        worst =
+            std::max({worst, std::abs(static_cast<double>(device.u) - truth.u) / weight_error(ray, truth, 1),
+                      std::abs(static_cast<double>(device.v) - truth.v) / weight_error(ray, truth, 2)});
+    }
+    // NaN: a number that is none.
+    return std::isnan(worst) ? std::numeric_limits<double>::infinity() : worst;
 }
 
 HitTally HitComparison::compare(std::span<const TraceRay> rays, std::span<const TraceHit> device,
@@ -132,8 +158,11 @@ HitTally HitComparison::compare(std::span<const TraceRay> rays, std::span<const 
         [&](const auto& range, HitTally tally) {
             for (size_t i = range.begin(); i < range.end(); ++i) {
                 const Outcome outcome = compare_one(rays[i], device[i], embree[i], is_drawn(i, every), tally);
-                tally.count(outcome, rays[i], [&] {
-                    return std::pair(hit_text(scene_, device[i]), hit_text(scene_, oracle_.closest(rays[i])));
+                if (outcome == Outcome::same) continue;
+                tally.count(outcome, severity(rays[i], device[i]), [&] {
+                    return Disagreement{.ray = rays[i],
+                                        .device = hit_text(scene_, device[i]),
+                                        .expected = hit_text(scene_, oracle_.closest(rays[i]))};
                 });
             }
             return tally;
@@ -144,38 +173,45 @@ HitTally HitComparison::compare(std::span<const TraceRay> rays, std::span<const 
         });
 }
 
+// The outcome is the device's, but where Embree alone is wrong; beside another one, Embree's mistake is counted here.
 Outcome HitComparison::compare_one(const TraceRay& ray, const TraceHit& device, const TraceHit& embree,
                                    bool judge_anyway, HitTally& tally) const {
     ++tally.rays;
-    if (device.primitive != NO_PRIMITIVE) ++tally.hits;
-    if (judge_anyway || device.primitive != embree.primitive) {
+    const bool is_hit = device.primitive != NO_PRIMITIVE;
+    if (is_hit) ++tally.hits;
+    const BruteHit exact = is_hit ? oracle_.examine(ray, device.primitive) : BruteHit();
+    // Then the plane tells nothing, and judge() asks how far the point is from the triangle.
+    const bool is_edge_on = is_hit && exact.is_edge_on(position_error(ray, device.primitive));
+    Outcome outcome = Outcome::same;
+    bool embree_wrong = false;
+    if (judge_anyway || device.primitive != embree.primitive || is_edge_on) {
         ++tally.judged;
-        const Outcome outcome = judge_both(ray, device, embree, tally);
-        if (outcome != Outcome::same || device.primitive != embree.primitive) return outcome;
+        outcome = outcome_of(verdict_on(ray, device));
+        embree_wrong = verdict_on(ray, embree) == Verdict::wrong;
     }
-    return device.primitive == NO_PRIMITIVE ? Outcome::same : compare_errors(ray, device, embree, tally);
+    if (is_hit && !is_edge_on && outcome != Outcome::device_wrong) {
+        if (!is_exact(ray, device, exact, tally)) outcome = Outcome::device_wrong;
+        if (device.primitive == embree.primitive) {
+            const double embree_error = std::abs(static_cast<double>(embree.t) - exact.t);
+            embree_wrong = embree_wrong || !(embree_error <= distance_error(ray, exact));
+        }
+    }
+    if (embree_wrong && outcome == Outcome::same) return Outcome::embree_wrong;
+    if (embree_wrong) ++tally.embree_wrong;
+    return outcome;
 }
 
-// Both tracers name the same triangle: distances and weights against the exact ones.
-Outcome HitComparison::compare_errors(const TraceRay& ray, const TraceHit& device, const TraceHit& embree,
-                                      HitTally& tally) const {
-    const BruteHit exact = oracle_.examine(ray, device.primitive);
-    const double bound = distance_error(ray, exact);
+bool HitComparison::is_exact(const TraceRay& ray, const TraceHit& device, const BruteHit& exact,
+                             HitTally& tally) const {
     const double error = std::abs(static_cast<double>(device.t) - exact.t);
-    tally.distance_share = std::max(tally.distance_share, error / bound);
-    tally.distance_relative = std::max(tally.distance_relative, error / exact.t);
-    tally.distance_ulps = std::max(tally.distance_ulps, error / unit_in_last_place(device.t));
-
+    const double share = error / distance_error(ray, exact);
     const double u_share = std::abs(static_cast<double>(device.u) - exact.u) / weight_error(ray, exact, 1);
     const double v_share = std::abs(static_cast<double>(device.v) - exact.v) / weight_error(ray, exact, 2);
-    const double worst_weight = std::max(u_share, v_share);
-    tally.weight_share = std::max(tally.weight_share, worst_weight);
-
-    const double embree_error = std::abs(static_cast<double>(embree.t) - exact.t);
-    const bool embree_right = embree_error <= bound;
-    if (error <= bound && worst_weight <= 1) return embree_right ? Outcome::same : Outcome::embree_wrong;
-    if (!embree_right) ++tally.embree_wrong;
-    return Outcome::device_wrong;
+    tally.distance_share = std::max(tally.distance_share, share);
+    tally.weight_share = std::max({tally.weight_share, u_share, v_share});
+    tally.distance_relative = std::max(tally.distance_relative, error / exact.t);
+    tally.distance_ulps = std::max(tally.distance_ulps, error / unit_in_last_place(device.t));
+    return share <= 1 && u_share <= 1 && v_share <= 1;
 }
 
 }  // namespace obscura

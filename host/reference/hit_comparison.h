@@ -18,8 +18,10 @@
 #include "reference/tracer.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace obscura {
@@ -29,9 +31,12 @@ std::string outcome_text(Outcome outcome);
 
 // A ray whose answers are not the same, for the reader of a report.
 struct Disagreement {
-    TraceRay ray;
+    TraceRay ray{};
+    std::optional<V3f> start =
+        {};  // of an obscurance ray whose result it is: the origin relative to its point
     Outcome outcome = Outcome::same;
-    std::string device, expected;
+    double severity = 0;  // the error as a share of what rounding explains; infinite between a hit and a miss
+    std::string device = {}, expected = {};
 };
 
 // What came of comparing the rays of one queue.
@@ -42,22 +47,25 @@ struct HitTally {
     // Largest errors of the device where the triangle is undisputed: of the distance and of the barycentric weights as
     // shares of their bounds; of the distance relative to it, and in units in its last place.
     double distance_share = 0, weight_share = 0, distance_relative = 0, distance_ulps = 0;
-    std::vector<Disagreement> disagreements;  // the first few of each outcome
+    std::vector<Disagreement> disagreements;  // the worst few of each outcome, worst first
 
-    // Counts a judged ray; texts gives {what the device said, what it should have}, if they are to be kept.
-    template <typename Texts>
-    void count(Outcome outcome, const TraceRay& ray, const Texts& texts) {
+    // Counts a judged ray; tell gives the Disagreement, if it is to be kept.
+    template <typename Tell>
+    void count(Outcome outcome, double severity, const Tell& tell) {
         if (outcome == Outcome::same) return;
         ++*count_of(outcome);
-        if (!keeps(outcome)) return;
-        const auto [device, expected] = texts();
-        disagreements.push_back({ray, outcome, device, expected});
+        if (!is_among_worst(outcome, severity)) return;
+        Disagreement told = tell();
+        told.outcome = outcome;
+        told.severity = severity;
+        keep(std::move(told));
     }
     void add(const HitTally& other);
 
   private:
     uint64_t* count_of(Outcome outcome);
-    bool keeps(Outcome outcome) const;
+    bool is_among_worst(Outcome outcome, double severity) const;
+    void keep(Disagreement disagreement);
 };
 
 // Whether ray i of a queue belongs to the part, one in `every`, that the oracle judges anyway. A fixed choice without
@@ -82,13 +90,12 @@ class HitComparison {
                      std::span<const TraceHit> embree, size_t every) const;
 
   private:
-    // The outcome is the device's, but where Embree alone is wrong; beside another one, Embree's mistake is counted here.
-    Outcome judge_both(const TraceRay& ray, const TraceHit& device, const TraceHit& embree,
-                       HitTally& tally) const;
     Outcome compare_one(const TraceRay& ray, const TraceHit& device, const TraceHit& embree,
                         bool judge_anyway, HitTally& tally) const;
-    Outcome compare_errors(const TraceRay& ray, const TraceHit& device, const TraceHit& embree,
-                           HitTally& tally) const;
+    Verdict verdict_on(const TraceRay& ray, const TraceHit& hit) const;
+    // Whether the device's numbers at its triangle are within their bounds.
+    bool is_exact(const TraceRay& ray, const TraceHit& device, const BruteHit& exact, HitTally& tally) const;
+    double severity(const TraceRay& ray, const TraceHit& device) const;
 
     const Scene& scene_;
     ReferenceTracer embree_;

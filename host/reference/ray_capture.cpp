@@ -15,10 +15,6 @@ V3f xyz(const f32x4& lane) {
     return {lane.x, lane.y, lane.z};
 }
 
-TraceHit hit_of(const f32x4& lane) {
-    return {lane.x, lane.y, lane.z, std::bit_cast<uint32_t>(lane.w)};
-}
-
 // `count` items of a lane of a queue for `capacity` items.
 std::vector<f32x4> lane(const Buffer& queue, uint64_t lane, uint64_t capacity, size_t count) {
     std::vector<f32x4> values(count);
@@ -38,6 +34,10 @@ std::vector<f32x4> pack(std::span<const TraceRay> rays) {
 }
 
 }  // namespace
+
+TraceHit hit_of(const f32x4& lane) {
+    return {lane.x, lane.y, lane.z, std::bit_cast<uint32_t>(lane.w)};
+}
 
 RayCapture::RayCapture(Device& device, ProgramLibrary& library, const Bvh& bvh, const std::string& options)
     : device_(device),

@@ -25,6 +25,9 @@ struct CapturedRays {
     std::vector<f32x4> results;
 };
 
+// As kernels write hits: t, u, v, primitive.
+TraceHit hit_of(const f32x4& lane);
+
 class RayCapture {
   public:
     // options: build options of the render's kernels.

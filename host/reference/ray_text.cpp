@@ -32,15 +32,22 @@ bool is_within_reach(const V3d& position) {
 
 }  // namespace
 
-std::string ray_text(const Scene& scene, const TraceRay& ray) {
-    return fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{:.9g}", world_coordinate(scene, ray.origin, 0),
-                       world_coordinate(scene, ray.origin, 1), world_coordinate(scene, ray.origin, 2),
-                       ray.direction.x, ray.direction.y, ray.direction.z,
-                       scene.unit * static_cast<double>(ray.t_max));
+std::string ray_text(const Scene& scene, const GivenRay& given) {
+    const TraceRay& ray = given.ray;
+    std::string text = fmt::format(
+        "{},{},{},{:.9g},{:.9g},{:.9g},{:.9g}", world_coordinate(scene, ray.origin, 0),
+        world_coordinate(scene, ray.origin, 1), world_coordinate(scene, ray.origin, 2), ray.direction.x,
+        ray.direction.y, ray.direction.z, scene.unit * static_cast<double>(ray.t_max));
+    if (given.start) {
+        const V3d start = scene.unit * V3d(*given.start);
+        text += fmt::format(",{:.9g},{:.9g},{:.9g}", start.x, start.y, start.z);
+    }
+    return text;
 }
 
-TraceRay ray_of_numbers(const Scene& scene, std::span<const long double> numbers) {
-    OBSCURA_CHECK(numbers.size() == 7, "{} numbers of a ray", numbers.size());
+GivenRay ray_of_numbers(const Scene& scene, std::span<const long double> numbers) {
+    if (numbers.size() != 7 && numbers.size() != 10)
+        throw InputError("--ray: {} numbers; a ray has 7, an obscurance ray 10", numbers.size());
     const auto unit = static_cast<long double>(scene.unit);
     TraceRay ray{};
     for (int axis = 0; axis < 3; ++axis) {
@@ -60,7 +67,15 @@ TraceRay ray_of_numbers(const Scene& scene, std::span<const long double> numbers
                          length, SHORTEST_DIRECTION, LARGEST);
     }
     if (!(ray.t_max > 0)) throw InputError("--ray: the reach must be above 0");
-    return ray;
+    if (numbers.size() == 7) return {ray};
+    V3f start;
+    for (int axis = 0; axis < 3; ++axis)
+        start[axis] = static_cast<float>(numbers[static_cast<size_t>(7 + axis)] / unit);
+    if (!is_within_reach(V3d(start)))
+        throw InputError(
+            "--ray: the origin's place beside its point must be numbers of at most {:.6g} m here",
+            LARGEST * scene.unit);
+    return {ray, start};
 }
 
 std::string hit_text(const Scene& scene, const TraceHit& hit) {

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -22,94 +23,81 @@ using Rays = std::vector<TraceRay>;
 // m from the world's origin, where floats are coarse.
 constexpr float WORLD_OFFSETS[] = {0, 1e3f, 1e5f};
 
-class SelfTest {
-  public:
-    SelfTest(Device& device, ProgramLibrary& library, bool portable, const std::string& only)
-        : device_(device),
-          library_(library),
-          portable_(portable),
-          only_(only),
-          options_(stage_options(Stage::trace, {}, false, portable)) {}
-
-    std::vector<QueueCheck> run() {
-        for (const float offset : WORLD_OFFSETS) {
-            const std::string place = offset == 0 ? "" : fmt::format(", {:g} m off", offset);
-            // Where floats are coarse, random coordinates coincide.
-            const bool coarse = offset > 0;
-            const Scene sphere = moved(icosphere(3), offset);
-            const Scene soup = moved(triangle_soup(2000, 0.1f, 1, 1), offset);
-            const Scene grid = moved(flat_grid(16), offset);
-            trace("sphere" + place, sphere, random_rays(sphere, 3000, 1), coarse);
-            trace("triangle soup" + place, soup, random_rays(soup, 3000, 1), coarse);
-            trace("flat grid" + place, grid, random_rays(grid, 3000, 1), coarse);
-            trace("sphere from inside, edges" + place, sphere,
-                  from_inside(sphere, edge_rays(sphere, 50000, 5)), true, 1000);
-            trace("sphere from inside, vertices" + place, sphere,
-                  from_inside(sphere, vertex_rays(sphere, 50000, 6)), true, 1000);
-            trace("soup, edges" + place, soup, edge_rays(soup, 3000, 2), true);
-            trace("soup, vertices" + place, soup, vertex_rays(soup, 3000, 3), true);
-            trace("grid along the axes" + place, grid, axis_rays(grid, 10000, 4), true);
-            trace("soup along the axes" + place, soup, axis_rays(soup, 3000, 4), true);
-        }
-        for (const float thinness : {1e-2f, 1e-4f, 1e-6f}) {
-            const Scene slivers = triangle_soup(1000, 1, thinness, 9);
-            trace(fmt::format("slivers, {:g}", thinness), slivers, edge_rays(slivers, 3000, 10), true);
-        }
-        const Scene nested = nested_scales(40);
-        trace("nested scales", nested, random_rays(nested, 5000, 12), false);
-        const Scene clusters = nested_clusters(8);
-        trace("nested clusters", clusters, edge_rays(clusters, 3000, 13), true);
-        const Scene heap = identical_triangles(20000);
-        trace("identical triangles", heap, random_rays(heap, 300, 8), false);
-        const Scene one = identical_triangles(1);
-        trace("one triangle", one, random_rays(one, 5000, 7), false);
-        const Scene none = MeshBuilder().finish();
-        trace("no triangle", none, random_rays(none, 1000, 1), false);
-        render();
-        return std::move(rows_);
-    }
-
-  private:
-    static Rays from_inside(const Scene& scene, Rays rays) {
-        const V3f center = scene.bounds.center();
-        for (TraceRay& ray : rays) {
-            const V3f target = ray.origin + ray.direction;
-            ray.origin = center + 0.1f * (ray.origin - center);
-            ray.direction = target - ray.origin;
-        }
-        return rays;
-    }
-
-    bool is_wanted(const std::string& name) const { return name.find(only_) != std::string::npos; }
-
-    // every: one ray in so many is judged by the oracle even if device and Embree agree.
-    void trace(const std::string& name, const Scene& scene, const Rays& rays, bool aimed, size_t every = 1) {
-        if (!is_wanted(name)) return;
-        const HitComparison comparison(scene);
-        const DeviceTracer tracer(device_, library_, build_bvh(scene), options_);
-        const std::vector<TraceHit> hits = tracer.closest(rays);
-        std::vector<TraceHit> embree(rays.size());
-        comparison.embree().closest(rays, embree);
-        HitTally tally = comparison.compare(rays, hits, embree, every);
-        const std::vector<uint8_t> blocked = tracer.occluded(rays);
-        for (size_t i = 0; i < rays.size(); ++i) {
-            if ((blocked[i] != 0) == (hits[i].primitive != NO_PRIMITIVE)) continue;
-            tally.count(Outcome::device_wrong, rays[i], [&] {
-                return std::pair(std::string(blocked[i] != 0 ? "blocked" : "free"), hit_text(scene, hits[i]));
-            });
-        }
-        rows_.push_back({name, std::move(tally), {}, aimed});
-    }
-
-    void render();
-
-    Device& device_;
-    ProgramLibrary& library_;
-    bool portable_;
-    const std::string& only_;
-    std::string options_;
-    std::vector<QueueCheck> rows_;
+// Rays through the traversal of one scene.
+struct TraversalCase {
+    std::string name;
+    const Scene& scene;
+    Rays rays;
+    bool aimed;        // at edges and vertices, where ties are
+    size_t every = 1;  // one ray in so many is judged by the oracle even if device and Embree agree
 };
+
+Rays from_inside(const Scene& scene, Rays rays) {
+    const V3f center = scene.bounds.center();
+    for (TraceRay& ray : rays) {
+        const V3f target = ray.origin + ray.direction;
+        ray.origin = center + 0.1f * (ray.origin - center);
+        ray.direction = target - ray.origin;
+    }
+    return rays;
+}
+
+template <typename Use>
+void for_each_traversal_case(const Use& use) {
+    for (const float offset : WORLD_OFFSETS) {
+        const std::string place = offset == 0 ? "" : fmt::format(", {:g} m off", offset);
+        // Where floats are coarse, random coordinates coincide.
+        const bool coarse = offset > 0;
+        const Scene sphere = moved(icosphere(3), offset);
+        const Scene soup = moved(triangle_soup(2000, 0.1f, 1, 1), offset);
+        const Scene grid = moved(flat_grid(16), offset);
+        use({"sphere" + place, sphere, random_rays(sphere, 3000, 1), coarse});
+        use({"triangle soup" + place, soup, random_rays(soup, 3000, 1), coarse});
+        use({"flat grid" + place, grid, random_rays(grid, 3000, 1), coarse});
+        use({"sphere from inside, edges" + place, sphere, from_inside(sphere, edge_rays(sphere, 50000, 5)),
+             true, 1000});
+        use({"sphere from inside, vertices" + place, sphere,
+             from_inside(sphere, vertex_rays(sphere, 50000, 6)), true, 1000});
+        use({"soup, edges" + place, soup, edge_rays(soup, 3000, 2), true});
+        use({"soup, vertices" + place, soup, vertex_rays(soup, 3000, 3), true});
+        use({"grid along the axes" + place, grid, axis_rays(grid, 10000, 4), true});
+        use({"soup along the axes" + place, soup, axis_rays(soup, 3000, 4), true});
+    }
+    for (const float thinness : {1e-2f, 1e-4f, 1e-6f}) {
+        const Scene slivers = triangle_soup(1000, 1, thinness, 9);
+        use({fmt::format("slivers, {:g}", thinness), slivers, edge_rays(slivers, 3000, 10), true});
+    }
+    const Scene nested = nested_scales(40);
+    use({"nested scales", nested, random_rays(nested, 5000, 12), false});
+    const Scene clusters = nested_clusters(8);
+    use({"nested clusters", clusters, edge_rays(clusters, 3000, 13), true});
+    const Scene heap = identical_triangles(20000);
+    use({"identical triangles", heap, random_rays(heap, 300, 8), false});
+    const Scene one = identical_triangles(1);
+    use({"one triangle", one, random_rays(one, 5000, 7), false});
+    const Scene none = MeshBuilder().finish();
+    use({"no triangle", none, random_rays(none, 1000, 1), false});
+}
+
+QueueCheck check_case(Device& device, ProgramLibrary& library, const std::string& options,
+                      const TraversalCase& test) {
+    const HitComparison comparison(test.scene);
+    const DeviceTracer tracer(device, library, build_bvh(test.scene), options);
+    const std::vector<TraceHit> hits = tracer.closest(test.rays);
+    std::vector<TraceHit> embree(test.rays.size());
+    comparison.embree().closest(test.rays, embree);
+    HitTally tally = comparison.compare(test.rays, hits, embree, test.every);
+    const std::vector<uint8_t> blocked = tracer.occluded(test.rays);
+    for (size_t i = 0; i < test.rays.size(); ++i) {
+        if ((blocked[i] != 0) == (hits[i].primitive != NO_PRIMITIVE)) continue;
+        tally.count(Outcome::device_wrong, std::numeric_limits<double>::infinity(), [&] {
+            return Disagreement{.ray = test.rays[i],
+                                .device = blocked[i] != 0 ? "blocked" : "free",
+                                .expected = hit_text(test.scene, hits[i])};
+        });
+    }
+    return {test.name, std::move(tally), {}, test.aimed};
+}
 
 // A closed room with a lamp, balls of plaster and chrome and a pane of glass, far enough from the world's origin for the
 // offsets of ray origins to matter.
@@ -137,29 +125,53 @@ Scene room() {
     return builder.finish();
 }
 
-void SelfTest::render() {
-    const auto name = [](const QueueCheck& queue) { return "room, " + queue.name + " rays"; };
-    SceneCheck check;
-    if (std::ranges::none_of(check.queues, [&](const QueueCheck& queue) { return is_wanted(name(queue)); }))
-        return;
-    const Scene scene = room();
+RenderSettings room_settings() {
     RenderSettings settings;
     settings.width = 80;
     settings.height = 60;
-    RenderJob job{scene, settings, {}};
-    job.portable = portable_;
-    check = check_scene(device_, library_, job, [](double, const RayCounts&) { return true; });
-    for (QueueCheck& queue : check.queues) {
-        queue.name = name(queue);
-        if (is_wanted(queue.name)) rows_.push_back(std::move(queue));
-    }
+    return settings;
+}
+
+std::string room_name(const QueueCheck& queue) {
+    return "room, " + queue.name + " rays";
 }
 
 }  // namespace
 
 std::vector<QueueCheck> self_test(Device& device, ProgramLibrary& library, bool portable,
                                   const std::string& only) {
-    return SelfTest(device, library, portable, only).run();
+    const auto is_wanted = [&](const std::string& name) { return name.find(only) != std::string::npos; };
+    const std::string options = stage_options(Stage::trace, {}, false, portable);
+    std::vector<QueueCheck> rows;
+    for_each_traversal_case([&](const TraversalCase& test) {
+        if (is_wanted(test.name)) rows.push_back(check_case(device, library, options, test));
+    });
+    SceneCheck check;
+    if (std::ranges::none_of(check.queues, is_wanted, room_name)) return rows;
+    const Scene scene = room();
+    RenderJob job{scene, room_settings(), {}};
+    job.portable = portable;
+    check = check_scene(device, library, job, [](double, const RayCounts&) { return true; });
+    for (QueueCheck& queue : check.queues) {
+        queue.name = room_name(queue);
+        if (is_wanted(queue.name)) rows.push_back(std::move(queue));
+    }
+    return rows;
+}
+
+bool with_self_test_case(const std::string& name, const UseOfCase& use) {
+    bool found = false;
+    const auto use_if = [&](bool is_it, const Scene& scene, const RenderSettings& settings) {
+        if (!is_it || found) return;
+        found = true;
+        use(scene, settings);
+    };
+    for_each_traversal_case([&](const TraversalCase& test) { use_if(test.name == name, test.scene, {}); });
+    const SceneCheck names;
+    const bool is_room =
+        std::ranges::any_of(names.queues, [&](const QueueCheck& queue) { return room_name(queue) == name; });
+    use_if(is_room, room(), room_settings());
+    return found;
 }
 
 }  // namespace obscura

@@ -4,6 +4,7 @@
 
 #include "reference/check.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,5 +15,9 @@ namespace obscura {
 // only: part of the names of the cases that are run; all if empty.
 std::vector<QueueCheck> self_test(Device& device, ProgramLibrary& library, bool portable,
                                   const std::string& only);
+
+// Calls use with the scene and the settings of the case of exactly this name; false if there is none.
+using UseOfCase = std::function<void(const Scene&, const RenderSettings&)>;
+bool with_self_test_case(const std::string& name, const UseOfCase& use);
 
 }  // namespace obscura

@@ -6,6 +6,8 @@ import json
 import os
 import pathlib
 import re
+import shlex
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -61,7 +63,7 @@ class CheckRay(unittest.TestCase):
             self.assertIn(verdict, result.stdout)
 
     def test_wrong_rays_are_refused(self):
-        for ray in ("", "1,2,3", "0,0,0,0,0,0,1", "0,0,0,0,0,1,1,1", "a,0,0,0,0,1,1", "0,0,0,0,0,1,nan",
+        for ray in ("", "1,2,3", "0,0,0,0,0,0,1", "0,0,0,0,0,1,1,1", "0,0,0,0,0,1,1,1,1,1,1", "a,0,0,0,0,1,1", "0,0,0,0,0,1,nan",
                     "3e18,0,0,0,0,1,1", "0,0,0,0,0,3e18,1", "0,0,0,0,0,1e-38,inf", "0,1e30,0,0,0,1,1"):
             with self.subTest(ray):
                 self.expect_refusal("check", CORNELL, "--ray", ray, names="--ray")
@@ -82,26 +84,72 @@ class CheckRay(unittest.TestCase):
                 for _, text in found:
                     self.assertAlmostEqual(1, float(text) / distance, delta=1e-6)
 
-    def test_lines_of_wrong_rays_are_the_same_rays_again(self):
+    def planted(self, file, text, replacement):
+        """The environment of a run whose kernels hold this error."""
         kernels = self.folder / "kernels"
-        subprocess.run(["cp", "-r", ROOT / "kernels", kernels], check=True)
-        planted = kernels / "lib/intersect.clh"
-        source = planted.read_text()
-        self.assertEqual(1, source.count("hit->t = ts[lane];"))
-        planted.write_text(source.replace("hit->t = ts[lane];", "hit->t = 1.00001f * ts[lane];"))
-        environment = {"OBSCURA_KERNEL_DIR": str(kernels), "OBSCURA_CACHE_DIR": str(self.folder)}
+        shutil.copytree(ROOT / "kernels", kernels, dirs_exist_ok=True)
+        source = (kernels / file).read_text()
+        self.assertEqual(1, source.count(text))
+        (kernels / file).write_text(source.replace(text, replacement))
+        return {"OBSCURA_KERNEL_DIR": str(kernels), "OBSCURA_CACHE_DIR": str(self.folder)}
+
+    def wrong_rays(self, *arguments, **environment):
+        """(queue or case, the device's answer, the expected one, [--case=,] --ray=) of each line."""
+        result = self.run_command("check", *arguments, **environment)
+        self.assertEqual(1, result.returncode, result.stderr)
+        wrong = re.findall(r"^(.*?): device (.*); expected (.*)\n +(.*--ray=.*)$", result.stdout, re.MULTILINE)
+        return [(place, device, expected, shlex.split(line)) for place, device, expected, line in wrong]
+
+    def test_lines_of_wrong_hits_are_the_same_rays_again(self):
+        environment = self.planted("lib/intersect.clh", "hit->t = ts[lane];", "hit->t = 1.00001f * ts[lane];")
         for transform in ({"translation": [1e6, -3e5, 2e6]}, {"scale": [2**-60] * 3}):
             with self.subTest(transform):
                 scene = self.placed(**transform)
-                result = self.run_command("check", scene, *SMALL, **environment)
-                self.assertEqual(1, result.returncode, result.stderr)
-                wrong = re.findall(r": device (triangle .*); expected (.*)\n +(--ray=\S+)", result.stdout)
+                wrong = [line for line in self.wrong_rays(scene, *SMALL, **environment) if line[1].startswith("triangle")]
                 self.assertGreater(len(wrong), 8)
-                for device, expected, ray in wrong[::5]:
-                    again = self.run_command("check", scene, ray, **environment)
+                for _, device, expected, ray in wrong[::5]:
+                    again = self.run_command("check", scene, *ray, **environment)
                     self.assertEqual(1, again.returncode, again.stderr)
                     self.assertIn(f"device   {device}\n", again.stdout)
                     self.assertIn(f"oracle   {expected}\n", again.stdout)
+
+    def test_lines_of_wrong_results_are_the_same_rays_again(self):
+        for queue, file, text, replacement in (
+                ("obscurance", "lib/obscurance_result.clh", "* frame->obscurance.y;", "* (1.001f * frame->obscurance.y);"),
+                ("obscurance", "lib/obscurance_result.clh", "length(start + hit.t * direction)", "length(1.001f * hit.t * direction)"),
+                ("shadow", "shadow.cl", "direction.xyz, direction.w);", "direction.xyz, 0.5f * direction.w);")):
+            environment = self.planted(file, text, replacement)
+            for transform in ({}, {"translation": [1e6, -3e5, 2e6]}):
+                with self.subTest(replacement, **transform):
+                    scene = self.placed(**transform)
+                    wrong = self.wrong_rays(scene, *SMALL, **environment)
+                    self.assertGreater(len(wrong), 2)
+                    self.assertEqual({queue}, {line[0] for line in wrong})
+                    for _, device, expected, ray in wrong[::4]:
+                        again = self.run_command("check", scene, *ray, **environment)
+                        self.assertEqual(1, again.returncode, again.stdout + again.stderr)
+                        self.assertIn(f"device   {device}\nexpected {expected}\nverdict  device wrong\n", again.stdout)
+                    healthy = self.run_command("check", scene, *wrong[0][3])
+                    self.assertEqual(0, healthy.returncode, healthy.stdout + healthy.stderr)
+                    self.assertIn(f"\nexpected {expected}\n", self.run_command("check", scene, *ray).stdout)
+
+    def test_lines_of_the_self_test_are_the_same_rays_again(self):
+        environment = self.planted("lib/intersect.clh", "hit->u = vs[lane];", "hit->u = ws[lane];")
+        for cases in ("soup, edges", "room, obscurance"):
+            wrong = self.wrong_rays("--self-test", "--case", cases, **environment)
+            self.assertGreater(len(wrong), 4)
+            for _, device, _, line in wrong[::8]:
+                again = self.run_command("check", "--self-test", *line, **environment)
+                self.assertEqual(1, again.returncode, again.stdout + again.stderr)
+                self.assertIn(f"device   {device}\n", again.stdout)
+        ray = "0,0,0,0,0,1,1"
+        self.expect_refusal("check", "--self-test", "--ray", ray, names="--case")
+        self.expect_refusal("check", "--self-test", "--case", "soup", "--ray", ray, names="whole name")
+
+    def test_obscurance_ray_of_a_render_without_any_is_refused(self):
+        ray = ("--ray", "2.78,2.73,2.8,0,-1,0,1,0,0.001,0")
+        self.assertEqual(0, self.run_command("check", CORNELL, *ray).returncode)
+        self.expect_refusal("check", CORNELL, *ray, "--no-obscurance", names="--ray")
 
     def test_far_camera_is_refused(self):
         def move(document):

@@ -22,10 +22,10 @@ MUTANTS = [
     ("the next primitive", "triangle soup", "lib/intersect.clh", "ws[lane];\n            hit->primitive = primitive;", "ws[lane];\n            hit->primitive = primitive ^ 1u;"),
     ("distances too long by 1e-5", "triangle soup", "lib/intersect.clh", "hit->t = ts[lane];", "hit->t = 1.00001f * ts[lane];"),
     ("weights of other corners", "triangle soup", "lib/intersect.clh", "hit->u = vs[lane];", "hit->u = ws[lane];"),
-    ("d from the offset origin", "room", "obscurance.cl", "length(start + hit.t * direction)", "length(hit.t * direction)"),
-    ("rho for another d_max", "room", "obscurance.cl", "* frame->obscurance.y;", "* (1.001f * frame->obscurance.y);"),
+    ("d from the offset origin", "room", "lib/obscurance_result.clh", "length(start + hit.t * direction)", "length(hit.t * direction)"),
+    ("rho for another d_max", "room", "lib/obscurance_result.clh", "* frame->obscurance.y;", "* (1.001f * frame->obscurance.y);"),
     ("rays beyond d_max", "room", "lib/obscurance_ray.clh", "sqrt(fmax(0.0f, d_max * d_max - across2)) - along", "2.0f * d_max"),
-    ("colours from the wrong corner", "room", "obscurance.cl", "texels, tables, hit.u, hit.v)", "texels, tables, hit.v, hit.u)"),
+    ("colours from the wrong corner", "room", "lib/obscurance_result.clh", "texels, tables, hit.u, hit.v)", "texels, tables, hit.v, hit.u)"),
     ("shadow rays that stop half-way", "room", "shadow.cl", "direction.xyz, direction.w);", "direction.xyz, 0.5f * direction.w);"),
     ("panes that dim too little", "room", "lib/pane.clh", "(1.0f - pane_reflectance(cosine))", "(1.0f - 0.99f * pane_reflectance(cosine))"),
 ]

@@ -26,7 +26,7 @@ std::string first_text(const HitTally& tally) {
     if (tally.disagreements.empty()) return {};
     const Disagreement& ray = tally.disagreements.front();
     return outcome_text(ray.outcome) + ": device " + ray.device + ", expected " + ray.expected + ", ray " +
-           ray_text(Scene(), ray.ray);
+           ray_text(Scene(), {ray.ray, ray.start});
 }
 
 bool same_bits(const TraceHit& a, const TraceHit& b) {
@@ -131,7 +131,7 @@ TEST_F(HardRays, AxisRaysMissNothingThatTheOracleHits) {
             for (size_t i = 0; i < rays.size(); ++i) {
                 if (!truth[i].hit()) continue;
                 ++oracle_hits;
-                ASSERT_NE(hits[i].primitive, NO_PRIMITIVE) << ray_text(scene, rays[i]);
+                ASSERT_NE(hits[i].primitive, NO_PRIMITIVE) << ray_text(scene, {rays[i]});
             }
             EXPECT_GT(oracle_hits, 100U);
             expect_none_wrong(scene, rays);

@@ -10,6 +10,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -64,18 +67,62 @@ TEST_F(HitComparisonOfSphere, PlantedErrorsAreTheDevices) {
     expect_wrong(tally_after([](TraceHit& hit) { std::swap(hit.u, hit.v); }));
 }
 
-TEST_F(HitComparisonOfSphere, KeepsTheFirstDisagreementsOnly) {
+TEST_F(HitComparisonOfSphere, KeepsTheWorstDisagreementsWorstFirst) {
     std::vector<TraceHit> device = embree;
+    float longer = 1;
     for (TraceHit& hit : device)
-        hit.primitive = NO_PRIMITIVE;
+        hit.t *= longer += 0x1p-16f;
     HitTally all = tally(device);
     EXPECT_GT(all.device_wrong, 50u);
-    EXPECT_LT(all.disagreements.size(), 50u);
-    const size_t kept = all.disagreements.size();
+    ASSERT_EQ(all.disagreements.size(), 8u);
+    std::vector<double> severities;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        if (embree[i].primitive == NO_PRIMITIVE) continue;
+        const BruteHit exact = comparison.oracle().examine(rays[i], embree[i].primitive);
+        severities.push_back(std::abs(static_cast<double>(device[i].t) - exact.t) /
+                             comparison.distance_error(rays[i], exact));
+    }
+    std::ranges::sort(severities, std::greater{});
+    for (size_t i = 0; i < 8; ++i)
+        EXPECT_EQ(all.disagreements[i].severity, severities[i]);
+
     const HitTally once = all;
     all.add(once);
     EXPECT_EQ(all.device_wrong, 2 * once.device_wrong);
-    EXPECT_EQ(all.disagreements.size(), kept);
+    ASSERT_EQ(all.disagreements.size(), 8u);
+    for (size_t i = 0; i < 8; ++i)
+        EXPECT_EQ(all.disagreements[i].severity, severities[i / 2]);
+}
+
+TEST_F(HitComparisonOfSphere, MissOfWhatIsHitIsWorst) {
+    std::vector<TraceHit> device = embree;
+    size_t last = 0;
+    for (size_t i = 0; i < device.size(); ++i) {
+        if (device[i].primitive == NO_PRIMITIVE) continue;
+        device[i].t *= 1.5f;
+        last = i;
+    }
+    device[last] = {rays[last].t_max, 0, 0, NO_PRIMITIVE};
+    const Disagreement worst = tally(device).disagreements.front();
+    EXPECT_EQ(worst.severity, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(worst.ray.origin, rays[last].origin);
+    EXPECT_EQ(worst.device, "no hit");
+}
+
+// Where Embree names another triangle the device's own numbers are still compared.
+TEST_F(HitComparisonOfSphere, WeightsAreComparedWhereEmbreeIsWrong) {
+    const auto hit = std::ranges::find_if(
+        embree, [](const TraceHit& candidate) { return candidate.primitive != NO_PRIMITIVE; });
+    const TraceRay& ray = rays[static_cast<size_t>(hit - embree.begin())];
+    const TraceHit miss{ray.t_max, 0, 0, NO_PRIMITIVE};
+    TraceHit swapped = *hit;
+    std::swap(swapped.u, swapped.v);
+    const HitTally right = comparison.compare({&ray, 1}, {&*hit, 1}, {&miss, 1}, 1);
+    EXPECT_EQ(right.embree_wrong, 1u);
+    EXPECT_EQ(right.device_wrong, 0u);
+    const HitTally wrong = comparison.compare({&ray, 1}, {&swapped, 1}, {&miss, 1}, 1);
+    EXPECT_EQ(wrong.embree_wrong, 1u);
+    EXPECT_EQ(wrong.device_wrong, 1u);
 }
 
 TEST(RaysJudgedAnyway, AreSpreadOverTheRaysOfAPoint) {

@@ -34,7 +34,8 @@ Scene framed(const V3d& origin, double unit) {
 }
 
 TEST(RayText, UsualSceneHasTheDigitsOfFloats) {
-    EXPECT_EQ(ray_text(Scene(), {{0.1f, 1, 2}, {0, -1, 0}, INF}), "0.100000001,1,2,0,-1,0,inf");
+    EXPECT_EQ(ray_text(Scene(), {{{0.1f, 1, 2}, {0, -1, 0}, INF}}), "0.100000001,1,2,0,-1,0,inf");
+    EXPECT_EQ(ray_text(Scene(), {{{1, 2, 3}, {0, -1, 0}, 4}, V3f(0, 0.5f, 0)}), "1,2,3,0,-1,0,4,0,0.5,0");
     EXPECT_EQ(hit_text(Scene(), TraceHit{1, 0.5f, 0.25f, 7}), "triangle 7 at 1, u 0.5, v 0.25");
     EXPECT_EQ(hit_text(Scene(), TraceHit{1, 0, 0, NO_PRIMITIVE}), "no hit");
     EXPECT_EQ(hit_text(Scene(), BruteHit()), "no hit");
@@ -42,9 +43,9 @@ TEST(RayText, UsualSceneHasTheDigitsOfFloats) {
 
 TEST(RayText, TellsTheFilesCoordinates) {
     const Scene moved = framed({1e6, 0, -3}, 1);
-    EXPECT_EQ(ray_text(moved, {{0.5f, 1, 2}, {0, -1, 0}, 4}), "1000000.5,1,-1,0,-1,0,4");
+    EXPECT_EQ(ray_text(moved, {{{0.5f, 1, 2}, {0, -1, 0}, 4}}), "1000000.5,1,-1,0,-1,0,4");
     const Scene large = framed({0, 0, 0}, 1024);
-    EXPECT_EQ(ray_text(large, {{0.5f, 1, 2}, {0, -1, 0}, 4}), "512,1024,2048,0,-1,0,4096");
+    EXPECT_EQ(ray_text(large, {{{0.5f, 1, 2}, {0, -1, 0}, 4}}), "512,1024,2048,0,-1,0,4096");
     EXPECT_EQ(hit_text(large, TraceHit{0.5f, 0.5f, 0.25f, 7}), "triangle 7 at 512, u 0.5, v 0.25");
     BruteHit hit;
     hit.t = 0.5;
@@ -59,9 +60,13 @@ TEST(RayText, IsReadBackToTheBit) {
         for (TraceRay ray : random_rays(scene, 1000, 1)) {
             for (const float t_max : {INF, 0.1f}) {
                 ray.t_max = t_max;
-                const std::string text = ray_text(scene, ray);
-                const TraceRay again = ray_of_numbers(scene, numbers_of(text));
-                ASSERT_EQ(std::memcmp(&ray, &again, sizeof ray), 0) << text << "\n" << ray_text(scene, again);
+                const V3f start = 1e-5f * ray.direction;
+                const std::string text = ray_text(scene, {ray, start});
+                const GivenRay again = ray_of_numbers(scene, numbers_of(text));
+                ASSERT_EQ(std::memcmp(&ray, &again.ray, sizeof ray), 0) << text << "\n"
+                                                                        << ray_text(scene, again);
+                ASSERT_EQ(again.start, start) << text;
+                EXPECT_FALSE(ray_of_numbers(scene, numbers_of(ray_text(scene, {ray}))).start);
             }
         }
     }
@@ -75,7 +80,8 @@ TEST(RayText, RefusesWhatFloatsOrEmbreeCannotTrace) {
         {0, 0, NAN_VALUE, 0, 0, 1, 1},       {0, 0, 0, 0, 0, 0, 1},
         {0, 0, 0, 0, 0, 1e-38L, ENDLESS},    {0, 0, 0, 0, 3e18L, 0, ENDLESS},
         {0, 0, 0, 1, NAN_VALUE, 0, ENDLESS}, {0, 0, 0, 0, 0, 1, 0},
-        {0, 0, 0, 0, 0, 1, NAN_VALUE}};
+        {0, 0, 0, 0, 0, 1, NAN_VALUE},       {0, 0, 0, 0, 0, 1},
+        {0, 0, 0, 0, 0, 1, 1, 0, 0},         {0, 0, 0, 0, 0, 1, 1, 0, 0, NAN_VALUE}};
     for (const std::vector<long double>& numbers : wrong)
         EXPECT_INPUT_ERROR(ray_of_numbers(Scene(), numbers), "--ray");
     // What counts is the scene's own frame.
