@@ -2,6 +2,7 @@
 // What `obscura check` asks the device: the stages' own functions, with their results where the host can see them.
 #include "lib/obscurance_ray.clh"
 #include "lib/obscurance_result.clh"
+#include "lib/packet.clh"
 
 // The K rays of the first point_count points, and the nearest hits that count: lanes of K * point_count items, direction k
 // of point i being item K i + k.
@@ -33,13 +34,40 @@ kernel void obscurance_rays(global const Frame* frame, global const BvhNode* nod
     }
 }
 
-// rays: origin with t_max, direction. any_hit: 1 = whether anything is hit, 0 = the nearest hit.
+#ifndef OBSCURA_PORTABLE
+
+// The nearest hits of rays in packets: those that follow one another and have signs and longest axis in common. Rays as below.
+inline void trace_in_packets(global const BvhNode* nodes, global const TriangleBlock* blocks,
+                             global const float4* rays, global float4* hits, Share share) {
+    RayPacket packet;
+    for (uint first = share.first; first < share.last; first += packet.count) {
+        clear_packet(&packet);
+        for (uint i = first; i < share.last; ++i) {
+            if (!join_packet(&packet, rays[2u * i].xyz, rays[2u * i + 1u].xyz, rays[2u * i].w)) break;
+        }
+        trace_packet(nodes, blocks, &packet);
+        for (uint lane = 0u; lane < packet.count; ++lane) {
+            const Hit hit = packet.hits[lane];
+            hits[first + lane] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
+        }
+    }
+}
+
+#endif
+
+// rays: origin with t_max, direction. query: RAY_QUERY_*
 kernel void trace_rays(global const BvhNode* nodes, global const TriangleBlock* blocks,
-                       global const float4* rays, global float4* hits, uint count, uint any_hit) {
+                       global const float4* rays, global float4* hits, uint count, uint query) {
     const Share share = share_of_group(count);
+#ifndef OBSCURA_PORTABLE
+    if (query == RAY_QUERY_PACKETS) {
+        trace_in_packets(nodes, blocks, rays, hits, share);
+        return;
+    }
+#endif
     RayStream stream;
     for (uint first = share.first; first < share.last; first += stream.count) {
-        trace_packed_rays(nodes, blocks, rays, first, share.last, any_hit != 0u, &stream);
+        trace_packed_rays(nodes, blocks, rays, first, share.last, query == RAY_QUERY_ANY, &stream);
         for (uint ray = 0u; ray < stream.count; ++ray) {
             const Hit hit = stream.hits[ray];
             hits[first + ray] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
@@ -47,8 +75,8 @@ kernel void trace_rays(global const BvhNode* nodes, global const TriangleBlock* 
     }
 }
 
-// What obscurance rays bring back. rays: as above; starts: each origin - point; out, lanes of count: the nearest hits as
-// above, then rgb and the same without colours.
+// What obscurance rays bring back. rays: as above; starts: each origin - point; out, lanes of count: the hits as above; the
+// t at which they are d_max away from their points, up to which hits count; rgb and the same without colours.
 kernel void obscurance_results(global const Frame* frame, global const BvhNode* nodes,
                                global const TriangleBlock* blocks, global const SceneTriangle* triangles,
                                global const SceneMaterial* materials, global const uchar4* texels,
@@ -57,7 +85,13 @@ kernel void obscurance_results(global const Frame* frame, global const BvhNode* 
     const Share share = share_of_group(count);
     RayStream stream;
     for (uint first = share.first; first < share.last; first += stream.count) {
-        trace_packed_rays(nodes, blocks, rays, first, share.last, false, &stream);
+        stream.count = 0u;
+        for (uint i = first; i < min(first + STREAM_RAYS, share.last); ++i) {
+            const float3 direction = rays[2u * i + 1u].xyz;
+            add_ray(&stream, rays[2u * i].xyz, direction,
+                    distance_limit(starts[i].xyz, direction, frame->obscurance.x));
+        }
+        trace_stream(nodes, blocks, &stream, !NEED_NEAREST_OCCLUDER);
         for (uint ray = 0u; ray < stream.count; ++ray) {
             const uint i = first + ray;
             const Hit hit = stream.hits[ray];
@@ -67,7 +101,8 @@ kernel void obscurance_results(global const Frame* frame, global const BvhNode* 
                 trace_obscurance(frame, nodes, blocks, triangles, materials, texels, tables,
                                  rays[2u * i].xyz - start, start, stream.directions[ray], hit, &overflow);
             out[i] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
-            out[count + i] = overflow ? (float4)(NAN) : result;
+            out[count + i] = (float4)(stream.t_max[ray], 0.0f, 0.0f, 0.0f);
+            out[2u * count + i] = overflow ? (float4)(NAN) : result;
         }
     }
 }

@@ -20,6 +20,13 @@ namespace {
 constexpr double ROUNDING = 0x1p-24;
 constexpr size_t KEPT_DISAGREEMENTS = 8;  // of each outcome
 
+constexpr double INFINITE = std::numeric_limits<double>::infinity();
+
+// What may be left of a barycentric weight where the triangle is no thicker than rounding: it can't be told from its edges.
+bool is_weight(float weight) {
+    return weight >= -1 && weight <= 2;
+}
+
 double unit_in_last_place(float value) {
     const float next = std::nextafter(std::abs(value), std::numeric_limits<float>::infinity());
     return static_cast<double>(next) - static_cast<double>(std::abs(value));
@@ -133,22 +140,6 @@ Verdict HitComparison::verdict_on(const TraceRay& ray, const TraceHit& hit) cons
     return judge(oracle_, ray, hit, [&](uint32_t primitive) { return position_error(ray, primitive); });
 }
 
-// How far the device's hit is from the truth.
-double HitComparison::severity(const TraceRay& ray, const TraceHit& device) const {
-    const BruteHit truth = oracle_.closest(ray);
-    const bool is_miss = device.primitive == NO_PRIMITIVE;
-    if (is_miss && !truth.hit()) return 0;
-    if (is_miss || !truth.hit()) return std::numeric_limits<double>::infinity();
-    double worst = std::abs(static_cast<double>(device.t) - truth.t) / distance_error(ray, truth);
-    if (device.primitive == truth.primitive) {
-        worst =
-            std::max({worst, std::abs(static_cast<double>(device.u) - truth.u) / weight_error(ray, truth, 1),
-                      std::abs(static_cast<double>(device.v) - truth.v) / weight_error(ray, truth, 2)});
-    }
-    // NaN: a number that is none.
-    return std::isnan(worst) ? std::numeric_limits<double>::infinity() : worst;
-}
-
 HitTally HitComparison::compare(std::span<const TraceRay> rays, std::span<const TraceHit> device,
                                 std::span<const TraceHit> embree, size_t every) const {
     OBSCURA_CHECK(rays.size() == device.size() && rays.size() == embree.size(),
@@ -157,9 +148,8 @@ HitTally HitComparison::compare(std::span<const TraceRay> rays, std::span<const 
         tbb::blocked_range<size_t>(0, rays.size(), 4096), HitTally{},
         [&](const auto& range, HitTally tally) {
             for (size_t i = range.begin(); i < range.end(); ++i) {
-                const Outcome outcome = compare_one(rays[i], device[i], embree[i], is_drawn(i, every), tally);
-                if (outcome == Outcome::same) continue;
-                tally.count(outcome, severity(rays[i], device[i]), [&] {
+                const Judged judged = compare_one(rays[i], device[i], embree[i], is_drawn(i, every), tally);
+                tally.count(judged.outcome, judged.severity, [&] {
                     return Disagreement{.ray = rays[i],
                                         .device = hit_text(scene_, device[i]),
                                         .expected = hit_text(scene_, oracle_.closest(rays[i]))};
@@ -174,35 +164,43 @@ HitTally HitComparison::compare(std::span<const TraceRay> rays, std::span<const 
 }
 
 // The outcome is the device's, but where Embree alone is wrong; beside another one, Embree's mistake is counted here.
-Outcome HitComparison::compare_one(const TraceRay& ray, const TraceHit& device, const TraceHit& embree,
-                                   bool judge_anyway, HitTally& tally) const {
+HitComparison::Judged HitComparison::compare_one(const TraceRay& ray, const TraceHit& device,
+                                                 const TraceHit& embree, bool judge_anyway,
+                                                 HitTally& tally) const {
     ++tally.rays;
+    Judged judged;
+    Judged of_embree;
     const bool is_hit = device.primitive != NO_PRIMITIVE;
     if (is_hit) ++tally.hits;
+    if (is_hit && device.primitive >= scene_.triangles.size()) return {Outcome::device_wrong, INFINITE};
     const BruteHit exact = is_hit ? oracle_.examine(ray, device.primitive) : BruteHit();
     // Then the plane tells nothing, and judge() asks how far the point is from the triangle.
     const bool is_edge_on = is_hit && exact.is_edge_on(position_error(ray, device.primitive));
-    Outcome outcome = Outcome::same;
-    bool embree_wrong = false;
-    if (judge_anyway || device.primitive != embree.primitive || is_edge_on) {
+    const bool same_triangle = device.primitive == embree.primitive;
+    if (judge_anyway || !same_triangle || is_edge_on) {
         ++tally.judged;
-        outcome = outcome_of(verdict_on(ray, device));
-        embree_wrong = verdict_on(ray, embree) == Verdict::wrong;
+        judged.outcome = outcome_of(verdict_on(ray, device));
+        if (judged.outcome == Outcome::device_wrong) judged.severity = INFINITE;
+        if (verdict_on(ray, embree) == Verdict::wrong) of_embree = {Outcome::embree_wrong, INFINITE};
     }
-    if (is_hit && !is_edge_on && outcome != Outcome::device_wrong) {
-        if (!is_exact(ray, device, exact, tally)) outcome = Outcome::device_wrong;
-        if (device.primitive == embree.primitive) {
-            const double embree_error = std::abs(static_cast<double>(embree.t) - exact.t);
-            embree_wrong = embree_wrong || !(embree_error <= distance_error(ray, exact));
-        }
+    if (is_edge_on) {
+        if (!is_weight(device.u) || !is_weight(device.v)) judged = {Outcome::device_wrong, INFINITE};
+    } else if (is_hit && (same_triangle || judged.outcome != Outcome::device_wrong)) {
+        const double share = error_share(ray, device, exact, tally);
+        if (!(share <= 1)) judged = {Outcome::device_wrong, share};
+        const double of_bound =
+            std::abs(static_cast<double>(embree.t) - exact.t) / distance_error(ray, exact);
+        if (same_triangle && !(of_bound <= 1)) of_embree = {Outcome::embree_wrong, of_bound};
     }
-    if (embree_wrong && outcome == Outcome::same) return Outcome::embree_wrong;
-    if (embree_wrong) ++tally.embree_wrong;
-    return outcome;
+    if (of_embree.outcome == Outcome::same) return judged;
+    if (judged.outcome == Outcome::same) return of_embree;
+    ++tally.embree_wrong;
+    return judged;
 }
 
-bool HitComparison::is_exact(const TraceRay& ray, const TraceHit& device, const BruteHit& exact,
-                             HitTally& tally) const {
+// The largest error of the device's numbers at its triangle, as a share of its bound; infinite where one is none.
+double HitComparison::error_share(const TraceRay& ray, const TraceHit& device, const BruteHit& exact,
+                                  HitTally& tally) const {
     const double error = std::abs(static_cast<double>(device.t) - exact.t);
     const double share = error / distance_error(ray, exact);
     const double u_share = std::abs(static_cast<double>(device.u) - exact.u) / weight_error(ray, exact, 1);
@@ -211,7 +209,8 @@ bool HitComparison::is_exact(const TraceRay& ray, const TraceHit& device, const 
     tally.weight_share = std::max({tally.weight_share, u_share, v_share});
     tally.distance_relative = std::max(tally.distance_relative, error / exact.t);
     tally.distance_ulps = std::max(tally.distance_ulps, error / unit_in_last_place(device.t));
-    return share <= 1 && u_share <= 1 && v_share <= 1;
+    if (std::isnan(share) || std::isnan(u_share) || std::isnan(v_share)) return INFINITE;
+    return std::max({share, u_share, v_share});
 }
 
 }  // namespace obscura

@@ -35,7 +35,8 @@ struct Disagreement {
     std::optional<V3f> start =
         {};  // of an obscurance ray whose result it is: the origin relative to its point
     Outcome outcome = Outcome::same;
-    double severity = 0;  // the error as a share of what rounding explains; infinite between a hit and a miss
+    // Who is wrong: by which share of what rounding explains; infinitely where hit or miss or the triangle is wrong.
+    double severity = 0;
     std::string device = {}, expected = {};
 };
 
@@ -90,12 +91,15 @@ class HitComparison {
                      std::span<const TraceHit> embree, size_t every) const;
 
   private:
-    Outcome compare_one(const TraceRay& ray, const TraceHit& device, const TraceHit& embree,
-                        bool judge_anyway, HitTally& tally) const;
+    struct Judged {
+        Outcome outcome = Outcome::same;
+        double severity = 0;  // as a Disagreement's
+    };
+    Judged compare_one(const TraceRay& ray, const TraceHit& device, const TraceHit& embree, bool judge_anyway,
+                       HitTally& tally) const;
     Verdict verdict_on(const TraceRay& ray, const TraceHit& hit) const;
-    // Whether the device's numbers at its triangle are within their bounds.
-    bool is_exact(const TraceRay& ray, const TraceHit& device, const BruteHit& exact, HitTally& tally) const;
-    double severity(const TraceRay& ray, const TraceHit& device) const;
+    double error_share(const TraceRay& ray, const TraceHit& device, const BruteHit& exact,
+                       HitTally& tally) const;
 
     const Scene& scene_;
     ReferenceTracer embree_;

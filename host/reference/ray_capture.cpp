@@ -109,17 +109,17 @@ DeviceTracer::DeviceTracer(Device& device, ProgramLibrary& library, const Bvh& b
 
 std::vector<uint8_t> DeviceTracer::occluded(std::span<const TraceRay> rays) const {
     std::vector<uint8_t> blocked;
-    for (const TraceHit& hit : trace(rays, true))
+    for (const TraceHit& hit : trace(rays, RAY_QUERY_ANY))
         blocked.push_back(hit.primitive != NO_PRIMITIVE ? 1 : 0);
     return blocked;
 }
 
-std::vector<TraceHit> DeviceTracer::trace(std::span<const TraceRay> rays, bool any_hit) const {
+std::vector<TraceHit> DeviceTracer::trace(std::span<const TraceRay> rays, uint32_t query) const {
     if (rays.empty()) return {};
     const Buffer ray_buffer = Buffer::holding(device_, "rays", "check", pack(rays));
     const Buffer hit_buffer(device_, "hits", "check", rays.size() * sizeof(f32x4));
     launch(device_, kernel_, "trace_rays", rays.size(), local_size_, nodes_, blocks_, ray_buffer, hit_buffer,
-           static_cast<uint32_t>(rays.size()), any_hit ? 1u : 0u);
+           static_cast<uint32_t>(rays.size()), query);
     std::vector<TraceHit> hits;
     hits.reserve(rays.size());
     for (const f32x4& lane : hit_buffer.contents<f32x4>())

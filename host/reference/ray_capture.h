@@ -73,12 +73,18 @@ class DeviceTracer {
   public:
     DeviceTracer(Device& device, ProgramLibrary& library, const Bvh& bvh, const std::string& options = {});
 
-    std::vector<TraceHit> closest(std::span<const TraceRay> rays) const { return trace(rays, false); }
+    std::vector<TraceHit> closest(std::span<const TraceRay> rays) const {
+        return trace(rays, RAY_QUERY_NEAREST);
+    }
+    // The same in packets, as camera rays are traced; to the bit.
+    std::vector<TraceHit> closest_in_packets(std::span<const TraceRay> rays) const {
+        return trace(rays, RAY_QUERY_PACKETS);
+    }
     // 1 where anything is hit, else 0.
     std::vector<uint8_t> occluded(std::span<const TraceRay> rays) const;
 
   private:
-    std::vector<TraceHit> trace(std::span<const TraceRay> rays, bool any_hit) const;
+    std::vector<TraceHit> trace(std::span<const TraceRay> rays, uint32_t query) const;
 
     Device& device_;
     uint32_t local_size_;

@@ -8,6 +8,8 @@
 #include "wavefront/frame.h"
 
 #include <bit>
+#include <cmath>
+#include <cstring>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,10 +24,12 @@ f32x4 lane(const V3f& v, float w) {
 // The stages that rays go through, with queues for one path.
 class RayStages {
   public:
-    RayStages(Device& device, ProgramLibrary& library, const RenderJob& job, const Bvh& bvh)
+    // settings: with their sky.
+    RayStages(Device& device, ProgramLibrary& library, const RenderJob& job, const RenderSettings& settings,
+              const Bvh& bvh)
         : device_(device),
           library_(library),
-          settings_(with_default_sky(job.scene, job.settings)),
+          settings_(settings),
           portable_(job.portable),
           needs_(analyse_needs(job.scene, settings_)) {
         const SceneArrays arrays = make_scene_arrays(job.scene, settings_.filter);
@@ -64,14 +68,14 @@ class RayStages {
         const std::vector<f32x4> rays{lane(ray.origin, ray.t_max), lane(ray.direction, 0)};
         const Buffer ray_buffer = Buffer::holding(device_, "rays", "check", rays);
         const Buffer start_buffer = Buffer::holding(device_, "starts", "check", std::vector{lane(start, 0)});
-        const Buffer out(device_, "results", "check", 2 * sizeof(f32x4));
+        const Buffer out(device_, "results", "check", 3 * sizeof(f32x4));
         const cl::Kernel kernel = library_.kernel(
             {"obscurance_results", options(Stage::obscurance), "check.cl", "obscurance_results"});
         launch(device_, kernel, "obscurance_results", 1, library_.local_size(), queues_.frame, scene_.nodes,
                scene_.blocks, scene_.triangles, scene_.materials, scene_.texels, scene_.tables, ray_buffer,
                start_buffer, out, 1u);
         const std::vector<f32x4> found = out.contents<f32x4>();
-        return {{ray}, {hit_of(found[0])}, {start}, {found[1]}};
+        return {{{ray.origin, ray.direction, found[1].x}}, {hit_of(found[0])}, {start}, {found[2]}};
     }
 
   private:
@@ -81,13 +85,32 @@ class RayStages {
 
     Device& device_;
     ProgramLibrary& library_;
-    RenderSettings settings_;
+    const RenderSettings& settings_;
     bool portable_;
     Needs needs_;
     SceneBuffers scene_;
     Frame frame_{};
     Queues queues_;
 };
+
+// What is found with the same ray by queries that have to agree with the nearest hit.
+std::string contradiction_of(const Scene& scene, const DeviceTracer& tracer, const TraceRay& ray,
+                             const TraceHit& nearest) {
+    const bool blocked = tracer.occluded({&ray, 1}).front() != 0;
+    if (blocked != (nearest.primitive != NO_PRIMITIVE))
+        return blocked ? "any-hit is blocked" : "any-hit is free";
+    const TraceHit in_packet = tracer.closest_in_packets({&ray, 1}).front();
+    if (std::memcmp(&in_packet, &nearest, sizeof nearest) == 0) return {};
+    return "in packets it is " + hit_text(scene, in_packet);
+}
+
+// The device's own reach of the ray must be the given one: behind panes it counts.
+void check_reach(const Scene& scene, const TraceRay& given, float reach) {
+    if (std::abs(given.t_max - reach) <= 1e-5f * reach) return;
+    throw InputError(
+        "--ray: with these settings this obscurance ray reaches {:.9g}, where it is --dmax from its point",
+        scene.unit * static_cast<double>(reach));
+}
 
 }  // namespace
 
@@ -102,16 +125,27 @@ RayCheck replay_ray(Device& device, ProgramLibrary& library, const RenderJob& jo
     check.truth = hits.oracle().closest(ray);
     const HitTally tally = hits.compare({&ray, 1}, {&check.device, 1}, {&check.embree, 1}, 1);
     if (!tally.disagreements.empty()) check.outcome = tally.disagreements.front().outcome;
+    check.contradiction = contradiction_of(job.scene, tracer, ray, check.device);
 
-    const Needs needs = analyse_needs(job.scene, with_default_sky(job.scene, job.settings));
+    const bool is_shadow_ray = !given.start && (ray.t_max == 1 || std::isinf(ray.t_max));
+    if (job.scene.cameras.empty() || !(given.start || is_shadow_ray)) {
+        if (given.start) throw InputError("--ray: ten numbers are an obscurance ray, and this case has none");
+        return check;
+    }
+    const RenderSettings settings = with_default_sky(job.scene, job.settings);
+    const Needs needs = analyse_needs(job.scene, settings);
     if (given.start && !needs.obscurance)
         throw InputError("--ray: ten numbers are an obscurance ray, and this render has none");
     if (!given.start && !needs.direct()) return check;
-    const ResultComparison results(job.scene, job.settings, hits);
-    RayStages stages(device, library, job, bvh);
-    check.result =
-        given.start ? results.judge_obscurance(stages.obscurance(ray, *given.start), 0, stages.frame(), true)
-                    : results.judge_shadow(stages.shadow(ray), 0, true);
+    const ResultComparison results(job.scene, settings, hits);
+    RayStages stages(device, library, job, settings, bvh);
+    if (given.start) {
+        const CapturedRays captured = stages.obscurance(ray, *given.start);
+        check_reach(job.scene, ray, captured.rays.front().t_max);
+        check.result = results.judge_obscurance(captured, 0, stages.frame(), true);
+    } else {
+        check.result = results.judge_shadow(stages.shadow(ray), 0, true);
+    }
     return check;
 }
 

@@ -7,6 +7,7 @@
 #include "wavefront/render.h"
 
 #include <optional>
+#include <string>
 
 namespace obscura {
 
@@ -15,16 +16,19 @@ struct RayCheck {
     TraceHit device, embree;
     BruteHit truth;
     Outcome outcome = Outcome::same;
-    // Of an obscurance ray what it brings back, of another one the light that comes through; nothing where the render
-    // has no such rays.
+    // What any-hit queries or packets make of the ray that contradicts the hit; empty: nothing.
+    std::string contradiction = {};
+    // Of an obscurance ray what it brings back, of a ray as shadow rays are (reach 1 or endless) the light that comes
+    // through; nothing where the render has no such rays.
     std::optional<JudgedResult> result = {};
 
     bool is_device_wrong() const {
-        return outcome == Outcome::device_wrong || (result && result->outcome == Outcome::device_wrong);
+        return outcome == Outcome::device_wrong || !contradiction.empty() ||
+               (result && result->outcome == Outcome::device_wrong);
     }
 };
 
-// Throws InputError for an obscurance ray of a render without obscurances.
+// Throws InputError for an obscurance ray of a render without obscurances, or with another reach than the render's.
 RayCheck replay_ray(Device& device, ProgramLibrary& library, const RenderJob& job, const GivenRay& given);
 
 }  // namespace obscura

@@ -66,7 +66,7 @@ GivenRay ray_of_numbers(const Scene& scene, std::span<const long double> numbers
         throw InputError("--ray: the direction has the length {:.6g}; it must be between {:g} and {:g}",
                          length, SHORTEST_DIRECTION, LARGEST);
     }
-    if (!(ray.t_max > 0)) throw InputError("--ray: the reach must be above 0");
+    if (!(ray.t_max > 0)) throw InputError("--ray: the reach must be above 0, as a float too");
     if (numbers.size() == 7) return {ray};
     V3f start;
     for (int axis = 0; axis < 3; ++axis)

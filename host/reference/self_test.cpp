@@ -4,6 +4,7 @@
 #include "bvh/bvh.h"
 #include "reference/hard_rays.h"
 #include "reference/meshes.h"
+#include "reference/ray_order.h"
 #include "reference/ray_text.h"
 #include "reference/scene_builder.h"
 #include "wavefront/features.h"
@@ -11,7 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
+#include <cstring>
 #include <string>
 #include <utility>
 
@@ -79,6 +80,20 @@ void for_each_traversal_case(const Use& use) {
     use({"no triangle", none, random_rays(none, 1000, 1), false});
 }
 
+// In the order that fills packets; hits in that of the rays.
+std::vector<TraceHit> packet_hits(const DeviceTracer& tracer, const Rays& rays) {
+    const std::vector<uint32_t> order = coherent_order(rays);
+    Rays sorted;
+    sorted.reserve(rays.size());
+    for (const uint32_t i : order)
+        sorted.push_back(rays[i]);
+    const std::vector<TraceHit> found = tracer.closest_in_packets(sorted);
+    std::vector<TraceHit> hits(rays.size());
+    for (size_t i = 0; i < order.size(); ++i)
+        hits[order[i]] = found[i];
+    return hits;
+}
+
 QueueCheck check_case(Device& device, ProgramLibrary& library, const std::string& options,
                       const TraversalCase& test) {
     const HitComparison comparison(test.scene);
@@ -87,14 +102,20 @@ QueueCheck check_case(Device& device, ProgramLibrary& library, const std::string
     std::vector<TraceHit> embree(test.rays.size());
     comparison.embree().closest(test.rays, embree);
     HitTally tally = comparison.compare(test.rays, hits, embree, test.every);
-    const std::vector<uint8_t> blocked = tracer.occluded(test.rays);
-    for (size_t i = 0; i < test.rays.size(); ++i) {
-        if ((blocked[i] != 0) == (hits[i].primitive != NO_PRIMITIVE)) continue;
-        tally.count(Outcome::device_wrong, std::numeric_limits<double>::infinity(), [&] {
-            return Disagreement{.ray = test.rays[i],
-                                .device = blocked[i] != 0 ? "blocked" : "free",
-                                .expected = hit_text(test.scene, hits[i])};
+    // What contradicts the hit says nothing about who is wrong by how much.
+    const auto count_wrong = [&](size_t i, const std::string& told) {
+        tally.count(Outcome::device_wrong, 0, [&] {
+            return Disagreement{
+                .ray = test.rays[i], .device = told, .expected = hit_text(test.scene, hits[i])};
         });
+    };
+    const std::vector<uint8_t> blocked = tracer.occluded(test.rays);
+    const std::vector<TraceHit> in_packets = packet_hits(tracer, test.rays);
+    for (size_t i = 0; i < test.rays.size(); ++i) {
+        if ((blocked[i] != 0) != (hits[i].primitive != NO_PRIMITIVE))
+            count_wrong(i, blocked[i] != 0 ? "blocked" : "free");
+        if (std::memcmp(&in_packets[i], &hits[i], sizeof(TraceHit)) != 0)
+            count_wrong(i, "in packets " + hit_text(test.scene, in_packets[i]));
     }
     return {test.name, std::move(tally), {}, test.aimed};
 }

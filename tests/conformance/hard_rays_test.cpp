@@ -8,6 +8,7 @@
 #include "reference/hit_comparison.h"
 #include "reference/meshes.h"
 #include "reference/ray_capture.h"
+#include "reference/ray_order.h"
 #include "reference/ray_text.h"
 #include "support/device.h"
 #include "support/scene_builder.h"
@@ -35,7 +36,7 @@ bool same_bits(const TraceHit& a, const TraceHit& b) {
 
 class HardRays : public test::DeviceTest {
   protected:
-    // Hits of both builds, which must be the same, and what any-hit says about the same rays.
+    // Hits of both builds, which must be the same, those of packets, and what any-hit says about the same rays.
     std::vector<TraceHit> trace(const Scene& scene, const std::vector<TraceRay>& rays) {
         const Bvh bvh = build_bvh(scene);
         ProgramLibrary library(device());
@@ -45,6 +46,7 @@ class HardRays : public test::DeviceTest {
             const std::vector<TraceHit> found = tracer.closest(rays);
             const std::vector<uint8_t> blocked = tracer.occluded(rays);
             if (hits.empty()) hits = found;
+            expect_same_in_packets(tracer, rays, hits);
             for (size_t i = 0; i < rays.size(); ++i) {
                 EXPECT_TRUE(same_bits(found[i], hits[i])) << "ray " << i << " differs in the portable build";
                 EXPECT_EQ(blocked[i] != 0, hits[i].primitive != NO_PRIMITIVE)
@@ -53,6 +55,18 @@ class HardRays : public test::DeviceTest {
             }
         }
         return hits;
+    }
+
+    // In the order that fills packets.
+    void expect_same_in_packets(const DeviceTracer& tracer, const std::vector<TraceRay>& rays,
+                                const std::vector<TraceHit>& hits) {
+        const std::vector<uint32_t> order = coherent_order(rays);
+        std::vector<TraceRay> sorted;
+        for (const uint32_t i : order)
+            sorted.push_back(rays[i]);
+        const std::vector<TraceHit> found = tracer.closest_in_packets(sorted);
+        for (size_t i = 0; i < order.size() && !HasFailure(); ++i)
+            EXPECT_TRUE(same_bits(found[i], hits[order[i]])) << "ray " << order[i] << " differs in packets";
     }
 
     // Every ray judged by the brute force, whether or not Embree agrees.

@@ -57,7 +57,7 @@ class ShadeStage : public test::DeviceTest {
             const V3f target(tile_x[i], 0, -0.5f);
             bench.set_ray(i, slot, target - 3.0f * direction, direction);
         }
-        bench.run_trace(count);
+        bench.run_trace(count, 0);
         return bench;
     }
     static V3f layer(test::StageBench& bench, uint32_t layer, uint32_t slot) {

@@ -20,7 +20,8 @@ Scene square() {
     return builder.finish();
 }
 
-class TraceStage : public test::DeviceTest {
+// Depth 0, camera rays in packets, and depth 1, glossy rays in streams.
+class TraceStage : public test::DeviceTest, public testing::WithParamInterface<uint32_t> {
   protected:
     // The first `count` of five rays, in slots that aren't their items.
     test::StageBench traced(uint32_t capacity, uint32_t count) {
@@ -30,7 +31,7 @@ class TraceStage : public test::DeviceTest {
             {0.75f, 0.25f, 2}, {0.25f, 0.75f, 1}, {-1, 0, 1}, {2.25f, 0.25f, 1}, {0.5f, 0.25f, 8}};
         for (uint32_t i = 0; i < 5; ++i)
             bench.set_ray(i, 4 - i, origins[i], down);
-        bench.run_trace(count);
+        bench.run_trace(count, GetParam());
         return bench;
     }
 };
@@ -41,7 +42,9 @@ void expect_hit(test::StageBench& bench, uint32_t item, uint32_t primitive, cons
     EXPECT_EQ(test::xyz_of(hit), t_u_v) << "ray " << item;
 }
 
-TEST_F(TraceStage, WritesHitsOfAnExactlyFullQueue) {
+INSTANTIATE_TEST_SUITE_P(Depths, TraceStage, testing::Values(0u, 1u));
+
+TEST_P(TraceStage, WritesHitsOfAnExactlyFullQueue) {
     test::StageBench bench = traced(5, 5);
     expect_hit(bench, 0, 0, {2, 0.5f, 0.25f});
     expect_hit(bench, 1, 1, {1, 0.25f, 0.5f});
@@ -57,7 +60,7 @@ TEST_F(TraceStage, WritesHitsOfAnExactlyFullQueue) {
     EXPECT_EQ(bench.counters, (std::array<uint32_t, STATUS_WORDS>{}));
 }
 
-TEST_F(TraceStage, LeavesItemsBeyondTheCountAlone) {
+TEST_P(TraceStage, LeavesItemsBeyondTheCountAlone) {
     test::StageBench bench = traced(7, 3);
     for (uint32_t i = 0; i < 3; ++i)
         EXPECT_FALSE(bench.rays().untouched(RAY_HIT, i));
@@ -67,7 +70,7 @@ TEST_F(TraceStage, LeavesItemsBeyondTheCountAlone) {
 
 // A tree in which every child of a node is the next node needs more stack than there is, in whatever order it is
 // visited. The builder never makes one.
-TEST_F(TraceStage, TooSmallStackIsReported) {
+TEST_P(TraceStage, TooSmallStackIsReported) {
     Bvh bvh;
     constexpr uint32_t LEVELS = 40;
     for (uint32_t level = 0; level < LEVELS; ++level) {
@@ -82,9 +85,9 @@ TEST_F(TraceStage, TooSmallStackIsReported) {
     bench.replace_bvh(bvh);
     bench.set_ray(0, 0, {0, 0, 3}, {1, 0, 0});
     bench.set_ray(1, 0, {0, 0, 3}, {0, 0, -1});
-    bench.run_trace(1);
+    bench.run_trace(1, GetParam());
     EXPECT_EQ(bench.counters[STATUS_CODE], STATUS_OK) << "the ray misses the root";
-    bench.run_trace(2);
+    bench.run_trace(2, GetParam());
     EXPECT_EQ(bench.counters[STATUS_CODE], STATUS_STACK_OVERFLOW);
     EXPECT_EQ(bench.counters[STATUS_ITEM], 1U);
     EXPECT_EQ(bench.counters[STATUS_STAGE], STAGE_TRACE);

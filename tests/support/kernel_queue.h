@@ -175,7 +175,7 @@ class StageBench {
     void run_camera(uint32_t first_pixel, uint32_t first_pass, uint32_t count) {
         run(Stage::camera, {.first_pixel = first_pixel, .first_pass = first_pass, .count = count});
     }
-    void run_trace(uint32_t count) { run(Stage::trace, {.count = count}); }
+    void run_trace(uint32_t count, uint32_t depth) { run(Stage::trace, {.count = count, .depth = depth}); }
     void run_shade(uint32_t count, uint32_t depth) { run(Stage::shade, {.count = count, .depth = depth}); }
     void run_shadow() { run(Stage::shadow, {}); }
     void run_obscurance(uint32_t depth) { run(Stage::obscurance, {.depth = depth}); }

@@ -109,6 +109,37 @@ TEST_F(HitComparisonOfSphere, MissOfWhatIsHitIsWorst) {
     EXPECT_EQ(worst.device, "no hit");
 }
 
+TEST_F(HitComparisonOfSphere, NumbersThatAreNoneAreWrong) {
+    const float none = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(tally_after([&](TraceHit& hit) { hit.t = none; }).device_wrong, 1u);
+    EXPECT_EQ(tally_after([&](TraceHit& hit) { hit.u = none; }).device_wrong, 1u);
+    EXPECT_EQ(tally_after([&](TraceHit& hit) { hit.v = none; }).device_wrong, 1u);
+    EXPECT_EQ(tally_after([&](TraceHit& hit) { hit.primitive = 320; }).device_wrong, 1u) << "there are 320";
+}
+
+// A triangle that the ray sees from its edge: where its line meets the plane tells nothing, but weights are weights.
+TEST(HitComparisonOfThinTriangle, WeightsOfEdgeOnHitsAreChecked) {
+    MeshBuilder builder;
+    const uint32_t first = builder.vertex({0, 0, 1});
+    builder.vertex({1, 0, 1});
+    builder.vertex({0.5f, 1e-7f, 2});
+    builder.triangle(first, first + 1, first + 2);
+    const Scene scene = builder.finish();
+    const HitComparison comparison(scene);
+    const TraceRay ray{{0.5f, 0, 0}, {0, 0, 1}, std::numeric_limits<float>::infinity()};
+    const BruteHit exact = comparison.oracle().examine(ray, 0);
+    ASSERT_TRUE(exact.is_edge_on(comparison.position_error(ray, 0)));
+    const TraceHit right{1.5f, 0.25f, 0.5f, 0};
+    const auto device_wrong = [&](TraceHit device) {
+        return comparison.compare({&ray, 1}, {&device, 1}, {&right, 1}, 1).device_wrong;
+    };
+    EXPECT_EQ(device_wrong(right), 0u);
+    EXPECT_EQ(device_wrong({1.5f, std::numeric_limits<float>::quiet_NaN(), 0.5f, 0}), 1u);
+    EXPECT_EQ(device_wrong({1.5f, 0.25f, 1e30f, 0}), 1u);
+    EXPECT_EQ(device_wrong({1.6f, 0.25f, 0.5f, 0}), 0u) << "on the triangle as well";
+    EXPECT_EQ(device_wrong({2.5f, 0.25f, 0.5f, 0}), 1u);
+}
+
 // Where Embree names another triangle the device's own numbers are still compared.
 TEST_F(HitComparisonOfSphere, WeightsAreComparedWhereEmbreeIsWrong) {
     const auto hit = std::ranges::find_if(
