@@ -9,7 +9,6 @@
 
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <span>
 #include <string>
 #include <vector>
@@ -100,7 +99,7 @@ std::string contradiction_of(const Scene& scene, const DeviceTracer& tracer, con
     if (blocked != (nearest.primitive != NO_PRIMITIVE))
         return blocked ? "any-hit is blocked" : "any-hit is free";
     const TraceHit in_packet = tracer.closest_in_packets({&ray, 1}).front();
-    if (std::memcmp(&in_packet, &nearest, sizeof nearest) == 0) return {};
+    if (same_bits(in_packet, nearest)) return {};
     return "in packets it is " + hit_text(scene, in_packet);
 }
 

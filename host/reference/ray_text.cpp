@@ -70,7 +70,7 @@ GivenRay ray_of_numbers(const Scene& scene, std::span<const long double> numbers
     if (numbers.size() == 7) return {ray};
     V3f start;
     for (int axis = 0; axis < 3; ++axis)
-        start[axis] = static_cast<float>(numbers[static_cast<size_t>(7 + axis)] / unit);
+        start[axis] = static_cast<float>(numbers[7 + static_cast<size_t>(axis)] / unit);
     if (!is_within_reach(V3d(start)))
         throw InputError(
             "--ray: the origin's place beside its point must be numbers of at most {:.6g} m here",

@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <string>
 #include <utility>
 
@@ -114,7 +113,7 @@ QueueCheck check_case(Device& device, ProgramLibrary& library, const std::string
     for (size_t i = 0; i < test.rays.size(); ++i) {
         if ((blocked[i] != 0) != (hits[i].primitive != NO_PRIMITIVE))
             count_wrong(i, blocked[i] != 0 ? "blocked" : "free");
-        if (std::memcmp(&in_packets[i], &hits[i], sizeof(TraceHit)) != 0)
+        if (!same_bits(in_packets[i], hits[i]))
             count_wrong(i, "in packets " + hit_text(test.scene, in_packets[i]));
     }
     return {test.name, std::move(tally), {}, test.aimed};

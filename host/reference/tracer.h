@@ -7,6 +7,8 @@
 #include "scene/scene.h"
 #include "shared/bvh.h"
 
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -26,6 +28,12 @@ struct TraceHit {
     float v;             // barycentric weight of vertex 2
     uint32_t primitive;  // triangle index in the scene; NO_PRIMITIVE = miss, then t = t_max of the ray
 };
+
+// To the bit: a NaN is itself, and zeros have signs.
+inline bool same_bits(const TraceHit& a, const TraceHit& b) {
+    using Words = std::array<uint32_t, 4>;
+    return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
+}
 
 class ReferenceTracer {
   public:

@@ -15,7 +15,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
 
 namespace obscura {
 namespace {
@@ -28,10 +27,6 @@ std::string first_text(const HitTally& tally) {
     const Disagreement& ray = tally.disagreements.front();
     return outcome_text(ray.outcome) + ": device " + ray.device + ", expected " + ray.expected + ", ray " +
            ray_text(Scene(), {ray.ray, ray.start});
-}
-
-bool same_bits(const TraceHit& a, const TraceHit& b) {
-    return std::memcmp(&a, &b, sizeof(TraceHit)) == 0;
 }
 
 class HardRays : public test::DeviceTest {
