@@ -3,6 +3,7 @@
 #include "cli/devices.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -35,7 +36,8 @@ Json to_json(const std::vector<DeviceInfo>& devices) {
                         {"opencl_version", info.opencl_version},
                         {"compute_units", info.compute_units},
                         {"memory_bytes", info.memory_bytes},
-                        {"max_allocation_bytes", info.max_allocation_bytes}});
+                        {"max_allocation_bytes", info.max_allocation_bytes},
+                        {"float_features", info.float_features}});
         rows.push_back(std::move(row));
     }
     Json result = {{"default", nullptr}, {"devices", std::move(rows)}};
@@ -58,6 +60,7 @@ void print_table(const std::vector<DeviceInfo>& devices) {
         fmt::print("     compute units   {}\n", info.compute_units);
         fmt::print("     memory          {}, at most {} in one buffer\n", bytes_text(info.memory_bytes),
                    bytes_text(info.max_allocation_bytes));
+        fmt::print("     floats          {}\n", fmt::join(info.float_features, ", "));
         fmt::print("     usable          {}\n", info.usable ? "yes" : "no: " + info.reason);
     }
     if (chosen < 0)

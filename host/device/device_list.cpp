@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include "base/error.h"
 #include "device/error.h"
@@ -68,6 +69,23 @@ std::string missing_requirement(Properties<cl::Device>& device, const DeviceInfo
     return {};
 }
 
+std::vector<std::string> float_features(cl_device_fp_config config) {
+    constexpr std::pair<cl_device_fp_config, const char*> NAMES[] = {
+        {CL_FP_DENORM, "denormals"},
+        {CL_FP_INF_NAN, "infinity and NaN"},
+        {CL_FP_ROUND_TO_NEAREST, "round to nearest"},
+        {CL_FP_ROUND_TO_ZERO, "round to zero"},
+        {CL_FP_ROUND_TO_INF, "round to infinity"},
+        {CL_FP_FMA, "fma"},
+        {CL_FP_SOFT_FLOAT, "in software"},
+        {CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT, "correctly rounded division and square root"},
+    };
+    std::vector<std::string> features;
+    for (const auto& [bit, name] : NAMES)
+        if ((config & bit) != 0) features.emplace_back(name);
+    return features;
+}
+
 DeviceInfo describe_device(const cl::Device& handle, const DeviceInfo& platform, int device_index) {
     Properties device(handle);
     DeviceInfo info = platform;
@@ -78,6 +96,7 @@ DeviceInfo describe_device(const cl::Device& handle, const DeviceInfo& platform,
     info.compute_units = device.get<cl_uint>(CL_DEVICE_MAX_COMPUTE_UNITS);
     info.memory_bytes = device.get<cl_ulong>(CL_DEVICE_GLOBAL_MEM_SIZE);
     info.max_allocation_bytes = device.get<cl_ulong>(CL_DEVICE_MAX_MEM_ALLOC_SIZE);
+    info.float_features = float_features(device.get<cl_device_fp_config>(CL_DEVICE_SINGLE_FP_CONFIG));
     info.is_cpu = (device.get<cl_device_type>(CL_DEVICE_TYPE) & CL_DEVICE_TYPE_CPU) != 0;
     info.reason = missing_requirement(device, info);
     info.usable = info.reason.empty();

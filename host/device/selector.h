@@ -22,6 +22,7 @@ struct DeviceInfo {
     std::string name, driver_version, opencl_version;
     uint32_t compute_units = 0;
     uint64_t memory_bytes = 0, max_allocation_bytes = 0;
+    std::vector<std::string> float_features;  // what CL_DEVICE_SINGLE_FP_CONFIG names
     bool is_cpu = false;
     bool usable = false;
     std::string reason;  // why not, a phrase for people; empty if usable

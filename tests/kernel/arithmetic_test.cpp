@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "device/launch.h"
@@ -97,6 +98,13 @@ TEST_F(Arithmetic, FunctionsAreWithinTheirUlps) {
                 worst, error_in_ulps(found[i], exact(static_cast<double>(x[i]), static_cast<double>(y[i]))));
         EXPECT_LE(worst, most) << name;
     }
+}
+
+// OpenCL's full profile asks for these two; the rest differs from device to device.
+TEST_F(Arithmetic, FloatFeaturesAreListed) {
+    const std::vector<std::string>& features = device().info().float_features;
+    for (const char* name : {"infinity and NaN", "round to nearest"})
+        EXPECT_EQ(std::ranges::count(features, name), 1) << name;
 }
 
 }  // namespace
