@@ -25,10 +25,9 @@ kernel void obscurance_rays(global const Frame* frame, global const BvhNode* nod
         for (uint ray = 0u; ray < stream.count; ++ray) {
             const uint i = owners.point[ray];
             const uint item = i * k_count + owners.result[ray] % k_count;
-            const Hit hit = stream.hits[ray];
             out[item] = (float4)(stream.slabs[ray].origin, stream.t_max[ray]);
             out[count + item] = (float4)(stream.directions[ray], as_float(owners.result[ray]));
-            out[2u * count + item] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
+            out[2u * count + item] = hit_lane(stream.hits[ray]);
             out[3u * count + item] = (float4)(ray_start(frame, points, i), 0.0f);
         }
     }
@@ -47,8 +46,7 @@ inline void trace_in_packets(global const BvhNode* nodes, global const TriangleB
         }
         trace_packet(nodes, blocks, &packet);
         for (uint lane = 0u; lane < packet.count; ++lane) {
-            const Hit hit = packet.hits[lane];
-            hits[first + lane] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
+            hits[first + lane] = hit_lane(packet.hits[lane]);
         }
     }
 }
@@ -69,8 +67,7 @@ kernel void trace_rays(global const BvhNode* nodes, global const TriangleBlock* 
     for (uint first = share.first; first < share.last; first += stream.count) {
         trace_packed_rays(nodes, blocks, rays, first, share.last, query == RAY_QUERY_ANY, &stream);
         for (uint ray = 0u; ray < stream.count; ++ray) {
-            const Hit hit = stream.hits[ray];
-            hits[first + ray] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
+            hits[first + ray] = hit_lane(stream.hits[ray]);
         }
     }
 }
@@ -100,7 +97,7 @@ kernel void obscurance_results(global const Frame* frame, global const BvhNode* 
             const float4 result =
                 trace_obscurance(frame, nodes, blocks, triangles, materials, texels, tables,
                                  rays[2u * i].xyz - start, start, stream.directions[ray], hit, &overflow);
-            out[i] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
+            out[i] = hit_lane(hit);
             out[count + i] = (float4)(stream.t_max[ray], 0.0f, 0.0f, 0.0f);
             out[2u * count + i] = overflow ? (float4)(NAN) : result;
         }

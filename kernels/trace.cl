@@ -10,7 +10,7 @@
 
 inline void store_hit(global float4* rays, global uint* counters, uint capacity, uint i, Hit hit) {
     if (isnan(hit.t)) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_TRACE, i);
-    rays[RAY_HIT * capacity + i] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
+    rays[RAY_HIT * capacity + i] = hit_lane(hit);
 }
 
 kernel void trace(global const Frame* frame, global const BvhNode* nodes, global const TriangleBlock* blocks,

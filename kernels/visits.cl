@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a ray costs: the production traversal, built so that it counts its visits. For `obscura bench`, which never times
-// this kernel.
+// this kernel. Camera rays are counted as others are, though they go in packets, whose rays share their visits.
 #define COUNT_VISITS
 #include "lib/stream.clh"
 

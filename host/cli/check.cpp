@@ -53,6 +53,8 @@ struct Checked {
     uint64_t rendered_rays;
     const Scene& scene;     // whose frame the rays are in
     const char* all_right;  // the verdict
+
+    const char* title() const { return is_self_test ? "cases" : "queues"; }
 };
 
 // All rows together.
@@ -79,11 +81,11 @@ Json to_json(const Checked& checked) {
         numbers["disagreements"] = Json::array();
         for (const Disagreement& ray : row.rays.disagreements) {
             numbers["disagreements"].push_back({{"outcome", outcome_text(ray.outcome)},
-                                                {"ray", ray_text(checked.scene, {ray.ray, ray.start})},
+                                                {"ray", ray_text(checked.scene, ray.ray)},
                                                 {"device", ray.device},
                                                 {"expected", ray.expected}});
         }
-        json[checked.is_self_test ? "cases" : "queues"][row.name] = std::move(numbers);
+        json[checked.title()][row.name] = std::move(numbers);
     }
     return json;
 }
@@ -120,7 +122,7 @@ void print_failures(const Checked& checked) {
             fmt::print("{}{}: device {}; expected {}\n    {}--ray={}\n", row.name,
                        is_doubt ? ", " + outcome_text(ray.outcome) : "", ray.device, ray.expected,
                        checked.is_self_test ? fmt::format("--case='{}' ", row.name) : "",
-                       ray_text(checked.scene, {ray.ray, ray.start}));
+                       ray_text(checked.scene, ray.ray));
         }
     }
 }
@@ -129,7 +131,7 @@ void print_failures(const Checked& checked) {
 ExitCode report(const CheckOptions& options, const Checked& checked) {
     const bool passed = std::ranges::all_of(checked.rows, &QueueCheck::passes);
     if (options.json.empty()) {
-        print_table(checked.rows, checked.is_self_test ? "cases" : "queues");
+        print_table(checked.rows, checked.title());
         print_failures(checked);
         fmt::print("{}\n", passed ? checked.all_right : "The check failed.");
     } else {

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "base/error.h"
-#include "reference/ray_text.h"
 
 namespace obscura {
 namespace {
@@ -150,7 +149,7 @@ HitTally HitComparison::compare(std::span<const TraceRay> rays, std::span<const 
             for (size_t i = range.begin(); i < range.end(); ++i) {
                 const Judged judged = compare_one(rays[i], device[i], embree[i], is_drawn(i, every), tally);
                 tally.count(judged.outcome, judged.severity, [&] {
-                    return Disagreement{.ray = rays[i],
+                    return Disagreement{.ray = {rays[i]},
                                         .device = hit_text(scene_, device[i]),
                                         .expected = hit_text(scene_, oracle_.closest(rays[i]))};
                 });
@@ -186,10 +185,10 @@ HitComparison::Judged HitComparison::compare_one(const TraceRay& ray, const Trac
     if (is_edge_on) {
         if (!is_weight(device.u) || !is_weight(device.v)) judged = {Outcome::device_wrong, INFINITE};
     } else if (is_hit && (same_triangle || judged.outcome != Outcome::device_wrong)) {
-        const double share = error_share(ray, device, exact, tally);
+        const double bound = distance_error(ray, exact);
+        const double share = error_share(ray, device, exact, bound, tally);
         if (!(share <= 1)) judged = {Outcome::device_wrong, share};
-        const double of_bound =
-            std::abs(static_cast<double>(embree.t) - exact.t) / distance_error(ray, exact);
+        const double of_bound = std::abs(static_cast<double>(embree.t) - exact.t) / bound;
         if (same_triangle && !(of_bound <= 1)) of_embree = {Outcome::embree_wrong, of_bound};
     }
     if (of_embree.outcome == Outcome::same) return judged;
@@ -198,11 +197,12 @@ HitComparison::Judged HitComparison::compare_one(const TraceRay& ray, const Trac
     return judged;
 }
 
-// The largest error of the device's numbers at its triangle, as a share of its bound; infinite where one is none.
+// The largest error of the device's numbers at its triangle, as a share of its bound; infinite where one is none. bound: of
+// the distance.
 double HitComparison::error_share(const TraceRay& ray, const TraceHit& device, const BruteHit& exact,
-                                  HitTally& tally) const {
+                                  double bound, HitTally& tally) const {
     const double error = std::abs(static_cast<double>(device.t) - exact.t);
-    const double share = error / distance_error(ray, exact);
+    const double share = error / bound;
     const double u_share = std::abs(static_cast<double>(device.u) - exact.u) / weight_error(ray, exact, 1);
     const double v_share = std::abs(static_cast<double>(device.v) - exact.v) / weight_error(ray, exact, 2);
     tally.distance_share = std::max(tally.distance_share, share);

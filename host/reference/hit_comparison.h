@@ -15,10 +15,10 @@
 #pragma once
 
 #include "reference/brute_force.h"
+#include "reference/ray_text.h"
 #include "reference/tracer.h"
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -31,9 +31,7 @@ std::string outcome_text(Outcome outcome);
 
 // A ray whose answers are not the same, for the reader of a report.
 struct Disagreement {
-    TraceRay ray{};
-    std::optional<V3f> start =
-        {};  // of an obscurance ray whose result it is: the origin relative to its point
+    GivenRay ray{};  // with a start if it is an obscurance ray's result
     Outcome outcome = Outcome::same;
     // Who is wrong: by which share of what rounding explains; infinitely where hit or miss or the triangle is wrong.
     double severity = 0;
@@ -98,7 +96,7 @@ class HitComparison {
     Judged compare_one(const TraceRay& ray, const TraceHit& device, const TraceHit& embree, bool judge_anyway,
                        HitTally& tally) const;
     Verdict verdict_on(const TraceRay& ray, const TraceHit& hit) const;
-    double error_share(const TraceRay& ray, const TraceHit& device, const BruteHit& exact,
+    double error_share(const TraceRay& ray, const TraceHit& device, const BruteHit& exact, double bound,
                        HitTally& tally) const;
 
     const Scene& scene_;

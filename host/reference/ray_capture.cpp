@@ -2,6 +2,7 @@
 #include "reference/ray_capture.h"
 
 #include "device/launch.h"
+#include "reference/ray_order.h"
 #include "shared/wavefront.h"
 
 #include <algorithm>
@@ -22,7 +23,12 @@ std::vector<f32x4> lane(const Buffer& queue, uint64_t lane, uint64_t capacity, s
     return values;
 }
 
-// As trace_rays and visits take them.
+}  // namespace
+
+TraceHit hit_of(const f32x4& lane) {
+    return {lane.x, lane.y, lane.z, std::bit_cast<uint32_t>(lane.w)};
+}
+
 std::vector<f32x4> pack(std::span<const TraceRay> rays) {
     std::vector<f32x4> lanes;
     lanes.reserve(2 * rays.size());
@@ -31,12 +37,6 @@ std::vector<f32x4> pack(std::span<const TraceRay> rays) {
         lanes.push_back({ray.direction.x, ray.direction.y, ray.direction.z, 0});
     }
     return lanes;
-}
-
-}  // namespace
-
-TraceHit hit_of(const f32x4& lane) {
-    return {lane.x, lane.y, lane.z, std::bit_cast<uint32_t>(lane.w)};
 }
 
 RayCapture::RayCapture(Device& device, ProgramLibrary& library, const Bvh& bvh, const std::string& options)
@@ -112,6 +112,19 @@ std::vector<uint8_t> DeviceTracer::occluded(std::span<const TraceRay> rays) cons
     for (const TraceHit& hit : trace(rays, RAY_QUERY_ANY))
         blocked.push_back(hit.primitive != NO_PRIMITIVE ? 1 : 0);
     return blocked;
+}
+
+std::vector<TraceHit> DeviceTracer::closest_in_packets(std::span<const TraceRay> rays) const {
+    const std::vector<uint32_t> order = coherent_order(rays);
+    std::vector<TraceRay> sorted;
+    sorted.reserve(rays.size());
+    for (const uint32_t i : order)
+        sorted.push_back(rays[i]);
+    const std::vector<TraceHit> found = trace(sorted, RAY_QUERY_PACKETS);
+    std::vector<TraceHit> hits(rays.size());
+    for (size_t i = 0; i < order.size(); ++i)
+        hits[order[i]] = found[i];
+    return hits;
 }
 
 std::vector<TraceHit> DeviceTracer::trace(std::span<const TraceRay> rays, uint32_t query) const {

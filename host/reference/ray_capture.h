@@ -28,6 +28,9 @@ struct CapturedRays {
 // As kernels write hits: t, u, v, primitive.
 TraceHit hit_of(const f32x4& lane);
 
+// As the kernels of check.cl and visits.cl take rays: origin with t_max, direction.
+std::vector<f32x4> pack(std::span<const TraceRay> rays);
+
 class RayCapture {
   public:
     // options: build options of the render's kernels.
@@ -76,10 +79,8 @@ class DeviceTracer {
     std::vector<TraceHit> closest(std::span<const TraceRay> rays) const {
         return trace(rays, RAY_QUERY_NEAREST);
     }
-    // The same in packets, as camera rays are traced; to the bit.
-    std::vector<TraceHit> closest_in_packets(std::span<const TraceRay> rays) const {
-        return trace(rays, RAY_QUERY_PACKETS);
-    }
+    // The same in packets, as camera rays are traced; to the bit. The device gets the rays in the order that fills packets.
+    std::vector<TraceHit> closest_in_packets(std::span<const TraceRay> rays) const;
     // 1 where anything is hit, else 0.
     std::vector<uint8_t> occluded(std::span<const TraceRay> rays) const;
 

@@ -9,6 +9,7 @@
 
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,14 +24,10 @@ f32x4 lane(const V3f& v, float w) {
 // The stages that rays go through, with queues for one path.
 class RayStages {
   public:
-    // settings: with their sky.
+    // settings: with their sky; needs: theirs.
     RayStages(Device& device, ProgramLibrary& library, const RenderJob& job, const RenderSettings& settings,
-              const Bvh& bvh)
-        : device_(device),
-          library_(library),
-          settings_(settings),
-          portable_(job.portable),
-          needs_(analyse_needs(job.scene, settings_)) {
+              const Needs& needs, const Bvh& bvh)
+        : device_(device), library_(library), settings_(settings), portable_(job.portable), needs_(needs) {
         const SceneArrays arrays = make_scene_arrays(job.scene, settings_.filter);
         scene_ = upload_scene(device, arrays, bvh);
         const LayerPlanes planes = assign_planes(needs_, {});
@@ -41,7 +38,6 @@ class RayStages {
                             {0, 0, 1, 1}, 1);
         queues_ = allocate_queues(device, queue_shape(needs_, settings_, plane_count(planes)), 1, 1, {0});
         queues_.frame.upload(std::span(&frame_, 1));
-        queues_.counters.clear();
     }
 
     const Frame& frame() const { return frame_; }
@@ -64,8 +60,7 @@ class RayStages {
 
     // The stage obscurance draws its own rays: a kernel beside it takes this one through its functions.
     CapturedRays obscurance(const TraceRay& ray, const V3f& start) {
-        const std::vector<f32x4> rays{lane(ray.origin, ray.t_max), lane(ray.direction, 0)};
-        const Buffer ray_buffer = Buffer::holding(device_, "rays", "check", rays);
+        const Buffer ray_buffer = Buffer::holding(device_, "rays", "check", pack({&ray, 1}));
         const Buffer start_buffer = Buffer::holding(device_, "starts", "check", std::vector{lane(start, 0)});
         const Buffer out(device_, "results", "check", 3 * sizeof(f32x4));
         const cl::Kernel kernel = library_.kernel(
@@ -86,7 +81,7 @@ class RayStages {
     ProgramLibrary& library_;
     const RenderSettings& settings_;
     bool portable_;
-    Needs needs_;
+    const Needs& needs_;
     SceneBuffers scene_;
     Frame frame_{};
     Queues queues_;
@@ -111,6 +106,23 @@ void check_reach(const Scene& scene, const TraceRay& given, float reach) {
         scene.unit * static_cast<double>(reach));
 }
 
+// What the ray brings back, through the stage that has such rays; nothing where the render has none.
+std::optional<JudgedResult> judge_result(Device& device, ProgramLibrary& library, const RenderJob& job,
+                                         const GivenRay& given, const HitComparison& hits, const Bvh& bvh) {
+    const TraceRay& ray = given.ray;
+    const bool is_as_shadow_rays = ray.t_max == 1 || std::isinf(ray.t_max);
+    if (job.scene.cameras.empty() || !(given.start || is_as_shadow_rays)) return {};
+    const RenderSettings settings = with_default_sky(job.scene, job.settings);
+    const Needs needs = analyse_needs(job.scene, settings);
+    if (given.start ? !needs.obscurance : !needs.direct()) return {};
+    const ResultComparison results(job.scene, settings, hits);
+    RayStages stages(device, library, job, settings, needs, bvh);
+    if (!given.start) return results.judge_shadow(stages.shadow(ray), 0, true);
+    const CapturedRays captured = stages.obscurance(ray, *given.start);
+    check_reach(job.scene, ray, captured.rays.front().t_max);
+    return results.judge_obscurance(captured, 0, stages.frame(), true);
+}
+
 }  // namespace
 
 RayCheck replay_ray(Device& device, ProgramLibrary& library, const RenderJob& job, const GivenRay& given) {
@@ -126,25 +138,9 @@ RayCheck replay_ray(Device& device, ProgramLibrary& library, const RenderJob& jo
     if (!tally.disagreements.empty()) check.outcome = tally.disagreements.front().outcome;
     check.contradiction = contradiction_of(job.scene, tracer, ray, check.device);
 
-    const bool is_shadow_ray = !given.start && (ray.t_max == 1 || std::isinf(ray.t_max));
-    if (job.scene.cameras.empty() || !(given.start || is_shadow_ray)) {
-        if (given.start) throw InputError("--ray: ten numbers are an obscurance ray, and this case has none");
-        return check;
-    }
-    const RenderSettings settings = with_default_sky(job.scene, job.settings);
-    const Needs needs = analyse_needs(job.scene, settings);
-    if (given.start && !needs.obscurance)
+    check.result = judge_result(device, library, job, given, hits, bvh);
+    if (given.start && !check.result)
         throw InputError("--ray: ten numbers are an obscurance ray, and this render has none");
-    if (!given.start && !needs.direct()) return check;
-    const ResultComparison results(job.scene, settings, hits);
-    RayStages stages(device, library, job, settings, bvh);
-    if (given.start) {
-        const CapturedRays captured = stages.obscurance(ray, *given.start);
-        check_reach(job.scene, ray, captured.rays.front().t_max);
-        check.result = results.judge_obscurance(captured, 0, stages.frame(), true);
-    } else {
-        check.result = results.judge_shadow(stages.shadow(ray), 0, true);
-    }
     return check;
 }
 

@@ -148,7 +148,7 @@ ResultTally ResultComparison::shadow(const CapturedRays& captured, size_t every,
         const JudgedResult judged = judge_shadow(captured, i, is_drawn(i, every));
         ++tallies.hits.rays;
         if (judged.given[3] == 0) ++tallies.hits.hits;
-        count(judged, {.ray = captured.rays[i]}, tallies);
+        count(judged, {.ray = {captured.rays[i]}}, tallies);
     });
 }
 
@@ -157,7 +157,7 @@ ResultTally ResultComparison::obscurance(const CapturedRays& captured, const Fra
     return for_each_ray(captured.rays.size(), tally, [&](size_t i, Tallies& tallies) {
         const JudgedResult judged = judge_obscurance(captured, i, frame, is_drawn(i, every));
         if (judged.first != captured.hits[i].primitive) return;
-        count(judged, {.ray = captured.rays[i], .start = captured.starts[i]}, tallies);
+        count(judged, {.ray = {captured.rays[i], captured.starts[i]}}, tallies);
     });
 }
 

@@ -4,7 +4,6 @@
 #include "bvh/bvh.h"
 #include "reference/hard_rays.h"
 #include "reference/meshes.h"
-#include "reference/ray_order.h"
 #include "reference/ray_text.h"
 #include "reference/scene_builder.h"
 #include "wavefront/features.h"
@@ -79,20 +78,6 @@ void for_each_traversal_case(const Use& use) {
     use({"no triangle", none, random_rays(none, 1000, 1), false});
 }
 
-// In the order that fills packets; hits in that of the rays.
-std::vector<TraceHit> packet_hits(const DeviceTracer& tracer, const Rays& rays) {
-    const std::vector<uint32_t> order = coherent_order(rays);
-    Rays sorted;
-    sorted.reserve(rays.size());
-    for (const uint32_t i : order)
-        sorted.push_back(rays[i]);
-    const std::vector<TraceHit> found = tracer.closest_in_packets(sorted);
-    std::vector<TraceHit> hits(rays.size());
-    for (size_t i = 0; i < order.size(); ++i)
-        hits[order[i]] = found[i];
-    return hits;
-}
-
 QueueCheck check_case(Device& device, ProgramLibrary& library, const std::string& options,
                       const TraversalCase& test) {
     const HitComparison comparison(test.scene);
@@ -105,11 +90,11 @@ QueueCheck check_case(Device& device, ProgramLibrary& library, const std::string
     const auto count_wrong = [&](size_t i, const std::string& told) {
         tally.count(Outcome::device_wrong, 0, [&] {
             return Disagreement{
-                .ray = test.rays[i], .device = told, .expected = hit_text(test.scene, hits[i])};
+                .ray = {test.rays[i]}, .device = told, .expected = hit_text(test.scene, hits[i])};
         });
     };
     const std::vector<uint8_t> blocked = tracer.occluded(test.rays);
-    const std::vector<TraceHit> in_packets = packet_hits(tracer, test.rays);
+    const std::vector<TraceHit> in_packets = tracer.closest_in_packets(test.rays);
     for (size_t i = 0; i < test.rays.size(); ++i) {
         if ((blocked[i] != 0) != (hits[i].primitive != NO_PRIMITIVE))
             count_wrong(i, blocked[i] != 0 ? "blocked" : "free");
@@ -181,16 +166,16 @@ std::vector<QueueCheck> self_test(Device& device, ProgramLibrary& library, bool 
 
 bool with_self_test_case(const std::string& name, const UseOfCase& use) {
     bool found = false;
-    const auto use_if = [&](bool is_it, const Scene& scene, const RenderSettings& settings) {
-        if (!is_it || found) return;
+    for_each_traversal_case([&](const TraversalCase& test) {
+        if (test.name != name) return;
         found = true;
-        use(scene, settings);
-    };
-    for_each_traversal_case([&](const TraversalCase& test) { use_if(test.name == name, test.scene, {}); });
+        use(test.scene, {});
+    });
     const SceneCheck names;
-    const bool is_room =
-        std::ranges::any_of(names.queues, [&](const QueueCheck& queue) { return room_name(queue) == name; });
-    use_if(is_room, room(), room_settings());
+    if (std::ranges::find(names.queues, name, room_name) != names.queues.end()) {
+        found = true;
+        use(room(), room_settings());
+    }
     return found;
 }
 
