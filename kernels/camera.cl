@@ -4,8 +4,9 @@
 //   Appends  nothing: sample i of the wave is path slot i and ray i
 //   Writes   ray i, path slot i (throughput 1, layers 0)
 // A wave is a run of samples in the order "all pixels of the crop for one sample, then the next sample"; so an
-// interrupted render is a whole picture with fewer samples. Pixel filters are sampled, not splatted (Ernst,
-// Stamminger, Greiner 2006), which leaves every pixel one owner.
+// interrupted render is a whole picture with fewer samples. The pixels are visited tile by tile (pixel_order), so that
+// neighbours in a queue are neighbours in the picture. Pixel filters are sampled, not splatted (Ernst, Stamminger,
+// Greiner 2006), which leaves every pixel one owner.
 #include "lib/layers.clh"
 #include "lib/math.clh"
 #include "lib/sampler.clh"
@@ -21,15 +22,16 @@ inline float filter_offset(global const Frame* frame, global const float* tables
     return mix(offsets[i], offsets[i + 1u], x - (float)i);
 }
 
-// first_pixel, first_pass: where in the sample order the wave starts; count: samples in it.
+// first_pixel, first_pass: where in that order the wave starts; count: samples in it.
 kernel void camera(global const Frame* frame, global const float* tables, global const uint* sample_order,
-                   global float4* rays, global float4* paths, uint first_pixel, uint first_pass, uint count) {
+                   global const uint* pixel_order, global float4* rays, global float4* paths,
+                   uint first_pixel, uint first_pass, uint count) {
     const uint slot = (uint)get_global_id(0);
     if (slot >= count) return;
     const uint pixels = frame->crop.z;
     const uint capacity = frame->crop.w;
     const uint position = first_pixel + slot;
-    const uint pixel = position % pixels;
+    const uint pixel = pixel_order[position % pixels];
     const uint pass = first_pass + position / pixels;
     const uint x = frame->image.z + pixel % frame->crop.x;
     const uint y = frame->image.w + pixel / frame->crop.x;

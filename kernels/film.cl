@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stage film: adds the finished paths of a wave to the picture's sums.
 //   Reads    the layers of the path slots
-//   Writes   the layer sums of pixel p of the wave; its slots p, p + pixels, p + 2 pixels ... in that order, and with
-//            the rounding errors carried along, so that every cut of the samples into waves gives the same bits
+//   Writes   the layer sums of the pixel that the camera visits as number p; its slots p, p + pixels, p + 2 pixels ...
+//            in that order, and with the rounding errors carried along, so that every cut of the samples into waves
+//            gives the same bits
 #include "lib/layers.clh"
 #include "lib/math.clh"
 #include "lib/status.clh"

@@ -18,43 +18,43 @@ class Developer {
   public:
     Developer(const FilmSums& film, size_t pixel_count) : film_(film), pixel_count_(pixel_count) {}
 
-    // Mean of a layer at a pixel; 0 where the layer isn't kept.
-    f32x4 mean(uint32_t layer, size_t pixel) const {
-        const uint64_t n = samples(pixel);
-        return n == 0 ? f32x4{} : quotient(layer, pixel, n);
+    // Mean of a layer at a place; 0 where the layer isn't kept.
+    f32x4 mean(uint32_t layer, size_t place) const {
+        const uint64_t n = samples(place);
+        return n == 0 ? f32x4{} : quotient(layer, place, n);
     }
 
     // Sum of the layers that partition it; w: coverage.
-    f32x4 beauty(size_t pixel) const {
-        f32x4 total = mean(LAYER_EMISSION, pixel);
+    f32x4 beauty(size_t place) const {
+        f32x4 total = mean(LAYER_EMISSION, place);
         for (uint32_t layer = LAYER_EMISSION + 1; layer < BEAUTY_LAYERS; ++layer) {
-            const f32x4 value = mean(layer, pixel);
+            const f32x4 value = mean(layer, place);
             total = {total.x + value.x, total.y + value.y, total.z + value.z, total.w};
         }
         return total;
     }
 
     // Of the samples, without bias; 0 where there are fewer than two.
-    f32x4 variance(size_t pixel) const {
-        const uint64_t n = samples(pixel);
-        return n < 2 ? f32x4{} : quotient(LAYER_VARIANCE, pixel, n - 1);
+    f32x4 variance(size_t place) const {
+        const uint64_t n = samples(place);
+        return n < 2 ? f32x4{} : quotient(LAYER_VARIANCE, place, n - 1);
     }
 
     // As pbrt-v4 has it: the variance over the mean, 0 where that is 0.
-    f32x4 relative_variance(size_t pixel) const {
-        const f32x4 v = variance(pixel);
-        const f32x4 m = beauty(pixel);
+    f32x4 relative_variance(size_t place) const {
+        const f32x4 v = variance(place);
+        const f32x4 m = beauty(place);
         const auto over = [](float a, float b) { return b != 0 ? a / b : 0; };
         return {over(v.x, m.x), over(v.y, m.y), over(v.z, m.z), 0};
     }
 
   private:
-    uint64_t samples(size_t pixel) const { return film_.samples + (pixel < film_.pixels_ahead ? 1 : 0); }
+    uint64_t samples(size_t place) const { return film_.samples + (place < film_.pixels_ahead ? 1 : 0); }
     // A layer's sum over a count, rounded once.
-    f32x4 quotient(uint32_t layer, size_t pixel, uint64_t count) const {
+    f32x4 quotient(uint32_t layer, size_t place, uint64_t count) const {
         const uint32_t plane = film_.planes[layer];
         if (plane == NO_PLANE) return {};
-        const auto& [sum, excess] = film_.sums[size_t{plane} * pixel_count_ + pixel];
+        const auto& [sum, excess] = film_.sums[size_t{plane} * pixel_count_ + place];
         const auto over = [count](float s, float e) {
             return static_cast<float>((static_cast<double>(s) - static_cast<double>(e)) /
                                       static_cast<double>(count));
@@ -120,6 +120,8 @@ void develop_band(const FilmSums& film, std::span<const std::string> wanted, Ima
     OBSCURA_CHECK(planes > 0 && film.sums.size() % planes == 0, "{} sums in {} planes", film.sums.size(),
                   planes);
     const size_t pixel_count = film.sums.size() / planes;
+    OBSCURA_CHECK(film.pixel_order.size() == pixel_count, "{} places for {} pixels", film.pixel_order.size(),
+                  pixel_count);
     const Developer developer(film, pixel_count);
     if (image.layers.empty()) {
         image.layers.push_back({"", {"R", "G", "B", "A"}, {}});
@@ -127,22 +129,25 @@ void develop_band(const FilmSums& film, std::span<const std::string> wanted, Ima
             image.layers.push_back({name, layer_info(name).channels, {}});
     }
 
-    std::vector<float>& beauty = image.layers[0].pixels;
-    for (size_t pixel = 0; pixel < pixel_count; ++pixel) {
-        const f32x4 sum = developer.beauty(pixel);
-        beauty.insert(beauty.end(), {sum.x, sum.y, sum.z, sum.w});
-    }
-    for (size_t i = 0; i < wanted.size(); ++i) {
-        const LayerInfo& info = layer_info(wanted[i]);
-        const size_t first = first_component(wanted[i]);
-        std::vector<float>& pixels = image.layers[i + 1].pixels;
-        for (size_t pixel = 0; pixel < pixel_count; ++pixel) {
-            const f32x4 value = wanted[i] == "Variance"           ? developer.variance(pixel)
-                                : wanted[i] == "RelativeVariance" ? developer.relative_variance(pixel)
-                                                                  : developer.mean(info.layer, pixel);
-            for (size_t c = 0; c < info.channels.size(); ++c)
-                pixels.push_back(component(value, first + c));
+    // Appends the band to a layer; value_at: of a place in the order of visits.
+    const auto append = [&](Layer& layer, size_t first, auto value_at) {
+        const size_t channels = layer.channels.size();
+        const size_t start = layer.pixels.size();
+        layer.pixels.resize(start + pixel_count * channels);
+        for (size_t place = 0; place < pixel_count; ++place) {
+            const f32x4 value = value_at(place);
+            float* const pixel = &layer.pixels[start + film.pixel_order[place] * channels];
+            for (size_t c = 0; c < channels; ++c)
+                pixel[c] = component(value, first + c);
         }
+    };
+    append(image.layers[0], 0, [&](size_t place) { return developer.beauty(place); });
+    for (size_t i = 0; i < wanted.size(); ++i) {
+        append(image.layers[i + 1], first_component(wanted[i]), [&](size_t place) {
+            return wanted[i] == "Variance"           ? developer.variance(place)
+                   : wanted[i] == "RelativeVariance" ? developer.relative_variance(place)
+                                                     : developer.mean(layer_info(wanted[i]).layer, place);
+        });
     }
 }
 

@@ -26,11 +26,13 @@ struct LayerInfo {
 const std::vector<LayerInfo>& layer_table();
 const LayerInfo& layer_info(const std::string& name);  // names not in the table: OBSCURA_CHECK
 
-// The sums of one film: plane of each LAYER_* (NO_PLANE = not kept), plane * pixel_count + pixel.
+// The sums of one film: plane of each LAYER_* (NO_PLANE = not kept), plane * pixel_count + the pixel's place in the order
+// of visits.
 struct FilmSums {
     std::array<uint32_t, LAYER_COUNT> planes;
     std::span<const FilmSum> sums;
-    // Samples that each pixel has: the first pixels_ahead pixels have one more than the others.
+    std::span<const uint32_t> pixel_order;  // the pixel that has each place, counted in rows
+    // Samples that each pixel has: the first pixels_ahead pixels in that order have one more than the others.
     uint64_t samples = 0;
     uint64_t pixels_ahead = 0;
 };

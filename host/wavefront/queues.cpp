@@ -27,6 +27,7 @@ Queues allocate_queues(Device& device, const QueueShape& shape, uint32_t capacit
     queues.frame = Buffer(device, "frame", "queues", sizeof(Frame));
     queues.counters = Buffer(device, "counters", "status", sizeof(DeviceStatus));
     queues.sample_order = Buffer::holding(device, "sample_order", "queues", sample_order);
+    queues.pixel_order = Buffer(device, "pixel_order", "queues", uint64_t{pixels} * sizeof(uint32_t));
     queues.film = Buffer(device, "film", "film", uint64_t{pixels} * shape.layer_planes * sizeof(FilmSum));
     return queues;
 }

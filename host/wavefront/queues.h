@@ -25,7 +25,8 @@ struct Queues {
     Buffer frame;
     Buffer counters;  // DeviceStatus
     Buffer sample_order;
-    Buffer film;  // FilmSum, plane * pixels + pixel
+    Buffer pixel_order;
+    Buffer film;  // FilmSum, plane * pixels + the pixel's place in pixel_order
 
     Buffer& buffer(Queue queue);
 };

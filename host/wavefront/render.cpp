@@ -11,6 +11,7 @@
 #include "base/units.h"
 #include "bvh/bvh.h"
 #include "film/develop.h"
+#include "sampling/pixel_order.h"
 #include "sampling/sample_order.h"
 #include "wavefront/describe.h"
 #include "wavefront/features.h"
@@ -134,6 +135,8 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
                    finished == all;
         };
         const Frame frame = make_frame(input, band, result.wave_capacity);
+        const std::vector<uint32_t> pixel_order = tiled_pixel_order(band.width(), band.height());
+        queues.pixel_order.upload(pixel_order);
         // Once stopped, the remaining bands stay black.
         const uint64_t done = result.complete ? scheduler.render(frame, report) : 0;
         result.complete = result.complete && done == band_samples;
@@ -141,7 +144,8 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
         result.samples_per_pixel = std::min(result.samples_per_pixel, static_cast<uint32_t>(passes));
         std::vector<FilmSum> sums(band.pixel_count() * shape.layer_planes);
         if (done > 0) queues.film.download(sums);
-        develop_band({planes, sums, passes, done % band.pixel_count()}, job.layers, result.image);
+        develop_band({planes, sums, pixel_order, passes, done % band.pixel_count()}, job.layers,
+                     result.image);
         samples_before += band_samples;
     }
     result.seconds.render = render_watch.seconds();

@@ -16,6 +16,7 @@ constexpr Argument texels{"texels", &SceneBuffers::texels};
 constexpr Argument tables{"tables", &SceneBuffers::tables};
 constexpr Argument frame{"frame", &Queues::frame};
 constexpr Argument sample_order{"sample_order", &Queues::sample_order};
+constexpr Argument pixel_order{"pixel_order", &Queues::pixel_order};
 constexpr Argument rays{"rays", &Queues::rays};
 constexpr Argument next_rays{"next_rays", &Queues::next_rays};
 constexpr Argument paths{"paths", &Queues::paths};
@@ -65,7 +66,7 @@ using enum StageTime;
 // clang-format off
 constexpr std::array<StageInfo, STAGE_COUNT> STAGES{{
     {Stage::camera, "camera", wave_start, {"camera", "camera"}, "", always, each, nullptr, nothing,
-     {frame, tables, sample_order, rays, paths, first_pixel, first_pass, count}},
+     {frame, tables, sample_order, pixel_order, rays, paths, first_pixel, first_pass, count}},
 
     {Stage::trace, "trace", each_depth, {"trace_camera", "trace_glossy"}, "", always, each, nullptr, nothing,
      {frame, nodes, blocks, rays, counters, count, depth}},

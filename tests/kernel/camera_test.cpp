@@ -4,14 +4,17 @@
 #include "support/kernel_queue.h"
 #include "support/scene_builder.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <set>
+#include <vector>
 
 namespace obscura {
 namespace {
 
 constexpr uint32_t WIDTH = 6, HEIGHT = 4, SPP = 4, PIXELS = WIDTH * HEIGHT, SAMPLES = PIXELS * SPP;
+const std::vector<uint32_t> ORDER = tiled_pixel_order(WIDTH, HEIGHT);  // of the pixels in a queue
 const V3d EYE(1, 2, 3), TARGET(0, 0.5, -1);
 
 Scene scene_with_camera(bool orthographic = false) {
@@ -63,7 +66,7 @@ TEST_F(CameraStage, FillsAQueueExactlyWithRaysThroughTheirPixels) {
     test::StageBench wave = bench(SAMPLES);
     wave.run_camera(0, 0, SAMPLES);
     for (uint32_t slot = 0; slot < SAMPLES; ++slot) {
-        const uint32_t pixel = slot % PIXELS;
+        const uint32_t pixel = ORDER[slot % PIXELS];
         EXPECT_EQ(test::bits(wave.rays().at(RAY_ORIGIN, slot).w), slot);
         EXPECT_EQ(test::xyz_of(wave.rays().at(RAY_ORIGIN, slot)), V3f(EYE));
         EXPECT_NEAR(test::xyz_of(wave.rays().at(RAY_DIRECTION, slot)).length(), 1, 2e-7);
@@ -82,7 +85,7 @@ TEST_F(CameraStage, StartsPathsWithEmptyLayers) {
     for (uint32_t slot = 0; slot < SAMPLES; ++slot) {
         EXPECT_EQ(test::bits(wave.paths().at(PATH_THROUGHPUT, slot)), test::bits(f32x4{1, 1, 1, 0}));
         const auto sample = test::bits(wave.paths().at(PATH_SAMPLE, slot));
-        EXPECT_EQ(sample[2], slot % PIXELS);
+        EXPECT_EQ(sample[2], ORDER[slot % PIXELS]);
         EXPECT_EQ(sample[3], 0U) << "flags";
         seeds.insert(sample[0]);
         if (slot % PIXELS == 5) samples.insert(sample[1]);
@@ -122,11 +125,13 @@ TEST_F(CameraStage, CropHasTheRaysOfTheWholePicture) {
     test::StageBench crop = bench(6, settings);
     crop.run_camera(0, 0, 6);
     for (uint32_t slot = 0; slot < 6; ++slot) {
-        const uint32_t pixel = (1 + slot / 3) * WIDTH + 3 + slot % 3;
+        const uint32_t pixel = tiled_pixel_order(3, 2)[slot];
+        const uint32_t in_whole = (1 + pixel / 3) * WIDTH + 3 + pixel % 3;
+        const auto same = static_cast<uint32_t>(std::ranges::find(ORDER, in_whole) - ORDER.begin());
         EXPECT_EQ(test::xyz_of(crop.rays().at(RAY_DIRECTION, slot)),
-                  test::xyz_of(whole.rays().at(RAY_DIRECTION, pixel)));
+                  test::xyz_of(whole.rays().at(RAY_DIRECTION, same)));
         EXPECT_EQ(test::bits(crop.paths().at(PATH_SAMPLE, slot).x),
-                  test::bits(whole.paths().at(PATH_SAMPLE, pixel).x));
+                  test::bits(whole.paths().at(PATH_SAMPLE, same).x));
     }
 }
 
@@ -138,8 +143,8 @@ TEST_F(CameraStage, OrthographicRaysAreParallelAndStartInTheirPixels) {
     for (uint32_t slot = 0; slot < PIXELS; ++slot) {
         EXPECT_LT((test::xyz_of(wave.rays().at(RAY_DIRECTION, slot)) - forward).length(), 2e-7);
         const Imath::V2d at = position(wave, slot);
-        EXPECT_NEAR(at.x, slot % WIDTH + 0.5, 0.5 + 1e-5);
-        EXPECT_NEAR(at.y, slot / WIDTH + 0.5, 0.5 + 1e-5);
+        EXPECT_NEAR(at.x, ORDER[slot] % WIDTH + 0.5, 0.5 + 1e-5);
+        EXPECT_NEAR(at.y, ORDER[slot] / WIDTH + 0.5, 0.5 + 1e-5);
     }
 }
 
@@ -150,8 +155,10 @@ TEST_F(CameraStage, TentFilterSpreadsRaysOverItsRadius) {
     test::StageBench wave = bench(SAMPLES, settings);
     wave.run_camera(0, 0, SAMPLES);
     double farthest = 0;
-    for (uint32_t slot = 0; slot < SAMPLES; ++slot)
-        farthest = std::max(farthest, std::abs(position(wave, slot).x - (slot % PIXELS % WIDTH + 0.5)));
+    for (uint32_t slot = 0; slot < SAMPLES; ++slot) {
+        const double middle = ORDER[slot % PIXELS] % WIDTH + 0.5;
+        farthest = std::max(farthest, std::abs(position(wave, slot).x - middle));
+    }
     EXPECT_GT(farthest, 0.5);
     EXPECT_LE(farthest, 1 + 1e-5);
 }

@@ -213,6 +213,8 @@ TEST_F(FilmStage, ManySamplesKeepTheirMeanAndVariance) {
     std::copy_n(planes, LAYER_COUNT, sums.planes.begin());
     const std::vector<FilmSum> found = film.contents<FilmSum>();
     sums.sums = found;
+    const std::vector<uint32_t> order{0};
+    sums.pixel_order = order;
     sums.samples = uint64_t{SLOTS} * WAVES;
     develop_band(sums, std::vector<std::string>{"emission", "Variance"}, image);
     const std::vector<float>& emission = image.layers.at(1).pixels;

@@ -9,6 +9,7 @@
 #include "device/launch.h"
 #include "device/program.h"
 #include "device/scene_buffers.h"
+#include "sampling/pixel_order.h"
 #include "sampling/sample_order.h"
 #include "scene/needs.h"
 #include "scene/radiometry.h"
@@ -125,6 +126,8 @@ class StageBench {
         buffers.frame = Buffer(device, "frame", "test", sizeof(Frame));
         buffers.sample_order =
             Buffer::holding(device, "sample_order", "test", bit_reversed_order(settings.spp));
+        buffers.pixel_order =
+            Buffer::holding(device, "pixel_order", "test", tiled_pixel_order(rect.width(), rect.height()));
         buffers.counters = Buffer(device, "counters", "test", sizeof(counters));
         for (const QueueSize& size : queue_sizes(shape))
             queues_.try_emplace(size.name, device, size.name, size.lanes, size.items * capacity,

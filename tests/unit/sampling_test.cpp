@@ -11,6 +11,7 @@
 #include "sampling/alias_table.h"
 #include "sampling/filter.h"
 #include "sampling/lattice.h"
+#include "sampling/pixel_order.h"
 #include "sampling/sample_order.h"
 
 namespace obscura {
@@ -148,6 +149,28 @@ TEST(SampleOrder, IsAPermutationWhosePrefixesAreSpread) {
         EXPECT_EQ(order.size(), spp);
     }
     EXPECT_EQ(bit_reversed_order(8), (std::vector<uint32_t>{0, 4, 2, 6, 1, 5, 3, 7}));
+}
+
+TEST(PixelOrder, TakesEveryPixelOnce) {
+    for (const auto& [width, height] : {std::pair{1u, 1u}, {7u, 1u}, {1u, 70u}, {33u, 65u}, {64u, 32u}}) {
+        const std::vector<uint32_t> order = tiled_pixel_order(width, height);
+        const std::set<uint32_t> pixels(order.begin(), order.end());
+        EXPECT_EQ(order.size(), size_t{width} * height);
+        EXPECT_EQ(pixels.size(), order.size());
+        EXPECT_EQ(*pixels.rbegin(), width * height - 1);
+    }
+}
+
+TEST(PixelOrder, RunsOfPowersOfTwoAreTiles) {
+    constexpr uint32_t WIDTH = 96, HEIGHT = 64;
+    const std::vector<uint32_t> order = tiled_pixel_order(WIDTH, HEIGHT);
+    for (const uint32_t side : {2u, 4u, 8u, 16u, 32u}) {
+        for (size_t i = 0; i < order.size(); ++i) {
+            const uint32_t first = order[i / (side * side) * side * side];
+            EXPECT_LT(order[i] % WIDTH - first % WIDTH, side) << "place " << i;
+            EXPECT_LT(order[i] / WIDTH - first / WIDTH, side) << "place " << i;
+        }
+    }
 }
 
 }  // namespace
