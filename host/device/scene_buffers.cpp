@@ -67,13 +67,15 @@ SceneMaterial make_material(const Scene& scene, const Material& material,
     if (material.unlit) flags |= MATERIAL_UNLIT;
     if (is_pane(material)) flags |= MATERIAL_PANE;
     if (model.has_specular) flags |= model.alpha > 0 ? MATERIAL_GLOSSY : MATERIAL_MIRROR;
+    u32x4 texture = texture_lane(scene, material, first_texel);
+    texture.w |= flags;
     return {lane(material.base_color, material.metallic),
             lane(model.dielectric_f0, model.alpha),
             lane(model.f90, material.transmission),
             lane(model.diffuse_scale, 0),
             lane(model.mean_scale, 0),
-            lane(is_emissive(material) ? material.emission : V3f(0), std::bit_cast<float>(flags)),
-            texture_lane(scene, material, first_texel)};
+            lane(is_emissive(material) ? material.emission : V3f(0), 0),
+            texture};
 }
 
 // Texels of all textures, one after the other; first_texel[i] is where texture i starts.

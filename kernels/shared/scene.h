@@ -13,11 +13,13 @@
 
 #define TRIANGLE_SMOOTH 1u  // vertex normals differ from the geometric normal
 
-#define MATERIAL_DOUBLE_SIDED 1u
-#define MATERIAL_UNLIT 2u
-#define MATERIAL_MIRROR 4u  // a specular lobe without roughness
-#define MATERIAL_GLOSSY 8u  // a specular lobe with roughness
-#define MATERIAL_PANE 16u   // lit, transmission > 0: a thin clear pane
+// In one word with the texture's bits. Beside floats a word of few bits would be a denormal number, and what is computed with
+// all four components of a vector takes many times as long for one of those.
+#define MATERIAL_DOUBLE_SIDED 0x100u
+#define MATERIAL_UNLIT 0x200u
+#define MATERIAL_MIRROR 0x400u  // a specular lobe without roughness
+#define MATERIAL_GLOSSY 0x800u  // a specular lobe with roughness
+#define MATERIAL_PANE 0x1000u   // lit, transmission > 0: a thin clear pane
 
 #define TEXTURE_WRAP_REPEAT 0u
 #define TEXTURE_WRAP_MIRROR 1u
@@ -57,8 +59,8 @@ typedef struct SceneMaterial {
     f32x4 f90;            // rgb: Fresnel at grazing incidence; w: transmission
     f32x4 diffuse_scale;  // rgb: base times this is the diffuse albedo before (1 - a(mu_o)); w: unused
     f32x4 mean_scale;     // rgb: base times this is R, the mean diffuse albedo; w: unused
-    f32x4 emission;       // rgb: radiance, W/(sr m^2); w: MATERIAL_* flags (uint bits)
-    u32x4 texture;        // base colour: first texel, width, height (0 = none), TEXTURE_* bits
+    f32x4 emission;       // rgb: radiance, W/(sr m^2); w: unused
+    u32x4 texture;        // base colour: first texel, width, height (0 = none); TEXTURE_* and MATERIAL_* bits
 } SceneMaterial;
 
 // 48 bytes: an emissive triangle.
