@@ -2,7 +2,6 @@
 // What `obscura check` asks the device: the stages' own functions, with their results where the host can see them.
 #include "lib/obscurance_ray.clh"
 #include "lib/obscurance_result.clh"
-#include "lib/packet.clh"
 
 // The K rays of the first point_count points, and the nearest hits that count: lanes of K * point_count items, direction k
 // of point i being item K i + k.
@@ -14,7 +13,7 @@ kernel void obscurance_rays(global const Frame* frame, global const BvhNode* nod
                             global const TriangleBlock* blocks, global const float4* points,
                             global const float4* paths, global uint* counters, global float4* out,
                             uint point_count, uint depth) {
-    const Share share = share_of_group(point_count);
+    const Share share = share_of(point_count, 256u);
     const uint k_count = frame->sampling.y;
     const uint count = point_count * k_count;
     RayStream stream;
@@ -25,49 +24,29 @@ kernel void obscurance_rays(global const Frame* frame, global const BvhNode* nod
         for (uint ray = 0u; ray < stream.count; ++ray) {
             const uint i = owners.point[ray];
             const uint item = i * k_count + owners.result[ray] % k_count;
-            out[item] = (float4)(stream.slabs[ray].origin, stream.t_max[ray]);
-            out[count + item] = (float4)(stream.directions[ray], as_float(owners.result[ray]));
-            out[2u * count + item] = hit_lane(stream.hits[ray]);
+            out[item] = (float4)(stream_origin(&stream, ray), stream.t_max[ray]);
+            out[count + item] = (float4)(stream_direction(&stream, ray), as_float(owners.result[ray]));
+            out[2u * count + item] = hit_lane(stream_hit(&stream, ray));
             out[3u * count + item] = (float4)(ray_start(frame, points, i), 0.0f);
         }
     }
 }
 
-#ifndef OBSCURA_PORTABLE
-
-// The nearest hits of rays in packets: those that follow one another and have signs and longest axis in common. Rays as below.
-inline void trace_in_packets(global const BvhNode* nodes, global const TriangleBlock* blocks,
-                             global const float4* rays, global float4* hits, Share share) {
-    RayPacket packet;
-    for (uint first = share.first; first < share.last; first += packet.count) {
-        clear_packet(&packet);
-        for (uint i = first; i < share.last; ++i) {
-            if (!join_packet(&packet, rays[2u * i].xyz, rays[2u * i + 1u].xyz, rays[2u * i].w)) break;
-        }
-        trace_packet(nodes, blocks, &packet);
-        for (uint lane = 0u; lane < packet.count; ++lane) {
-            hits[first + lane] = hit_lane(packet.hits[lane]);
-        }
-    }
-}
-
-#endif
-
 // rays: origin with t_max, direction. query: RAY_QUERY_*
 kernel void trace_rays(global const BvhNode* nodes, global const TriangleBlock* blocks,
                        global const float4* rays, global float4* hits, uint count, uint query) {
-    const Share share = share_of_group(count);
-#ifndef OBSCURA_PORTABLE
-    if (query == RAY_QUERY_PACKETS) {
-        trace_in_packets(nodes, blocks, rays, hits, share);
+    const Share share = share_of(count, STREAM_RAYS);
+    if (query == RAY_QUERY_ALONE) {
+        for (uint i = share.first; i < share.last; ++i)
+            hits[i] = hit_lane(
+                traverse(nodes, blocks, rays[2u * i].xyz, rays[2u * i + 1u].xyz, rays[2u * i].w, false));
         return;
     }
-#endif
     RayStream stream;
     for (uint first = share.first; first < share.last; first += stream.count) {
         trace_packed_rays(nodes, blocks, rays, first, share.last, query == RAY_QUERY_ANY, &stream);
         for (uint ray = 0u; ray < stream.count; ++ray) {
-            hits[first + ray] = hit_lane(stream.hits[ray]);
+            hits[first + ray] = hit_lane(stream_hit(&stream, ray));
         }
     }
 }
@@ -79,7 +58,7 @@ kernel void obscurance_results(global const Frame* frame, global const BvhNode* 
                                global const SceneMaterial* materials, global const uchar4* texels,
                                global const float* tables, global const float4* rays,
                                global const float4* starts, global float4* out, uint count) {
-    const Share share = share_of_group(count);
+    const Share share = share_of(count, STREAM_RAYS);
     RayStream stream;
     for (uint first = share.first; first < share.last; first += stream.count) {
         stream.count = 0u;
@@ -91,12 +70,12 @@ kernel void obscurance_results(global const Frame* frame, global const BvhNode* 
         trace_stream(nodes, blocks, &stream, !NEED_NEAREST_OCCLUDER);
         for (uint ray = 0u; ray < stream.count; ++ray) {
             const uint i = first + ray;
-            const Hit hit = stream.hits[ray];
+            const Hit hit = stream_hit(&stream, ray);
             const float3 start = starts[i].xyz;
             bool overflow = false;
-            const float4 result =
-                trace_obscurance(frame, nodes, blocks, triangles, materials, texels, tables,
-                                 rays[2u * i].xyz - start, start, stream.directions[ray], hit, &overflow);
+            const float4 result = trace_obscurance(frame, nodes, blocks, triangles, materials, texels, tables,
+                                                   rays[2u * i].xyz - start, start,
+                                                   stream_direction(&stream, ray), hit, &overflow);
             out[i] = hit_lane(hit);
             out[count + i] = (float4)(stream.t_max[ray], 0.0f, 0.0f, 0.0f);
             out[2u * count + i] = overflow ? (float4)(NAN) : result;

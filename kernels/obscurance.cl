@@ -13,7 +13,7 @@ kernel void obscurance(global const Frame* frame, global const BvhNode* nodes,
                        global const SceneMaterial* materials, global const uchar4* texels,
                        global const float* tables, global const float4* points, global const float4* paths,
                        global float4* results, global uint* counters, uint depth) {
-    const Share share = share_of_group(counters[COUNT_POINTS]);
+    const Share share = share_of(counters[COUNT_POINTS], 1024u);
     RayStream stream;
     RayOwners owners;
     for (uint next = 0u; next < direction_batches(frame, share);) {
@@ -25,7 +25,7 @@ kernel void obscurance(global const Frame* frame, global const BvhNode* nodes,
             results[owners.result[ray]] =
                 trace_obscurance(frame, nodes, blocks, triangles, materials, texels, tables,
                                  points[POINT_POSITION * frame->crop.w + i].xyz, ray_start(frame, points, i),
-                                 stream.directions[ray], stream.hits[ray], &overflow);
+                                 stream_direction(&stream, ray), stream_hit(&stream, ray), &overflow);
             if (overflow) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_OBSCURANCE, i);
         }
     }

@@ -10,7 +10,9 @@
 #include "lib/layers.clh"
 #include "lib/lights.clh"
 #include "lib/math.clh"
+#include "lib/outbox.clh"
 #include "lib/sampler.clh"
+#include "lib/share.clh"
 #include "lib/status.clh"
 #include "shared/bvh.h"
 
@@ -61,7 +63,7 @@ inline float emission_weight(global const Frame* frame, global const SceneTriang
 
 // Contribution of one light sample through both lobes, and its shadow ray if there is any.
 inline void connect_light(global const Frame* frame, const Vertex* v, LightSample light, uint sample,
-                          global float4* paths, global float4* shadow_rays, global uint* counters) {
+                          global float4* paths, Outbox* shadow_rays) {
     const Surface* surface = &v->surface;
     const float cosine = dot(light.direction, surface->n_shade);
     float3 diffuse = (float3)(0.0f);
@@ -86,19 +88,15 @@ inline void connect_light(global const Frame* frame, const Vertex* v, LightSampl
         paths[path_index(frame, light_lane(frame, sample, LOBE_GLOSSY), v->slot)] = (float4)(glossy, 0.0f);
     }
     if (max_component(diffuse + glossy) > 0.0f) {
-        const uint i = atomic_inc(&counters[COUNT_SHADOWS]);
-        const uint capacity = frame->crop.w * light_sample_count(frame);
         const float3 origin = surface->position + surface->offset * surface->n_geo;
-        shadow_rays[SHADOW_ORIGIN * capacity + i] =
-            (float4)(origin, as_float(sample * frame->crop.w + v->slot));
-        shadow_rays[SHADOW_DIRECTION * capacity + i] = (float4)(light.to_light, light.t_light);
+        post(shadow_rays, (float4)(origin, as_float(sample * frame->crop.w + v->slot)),
+             (float4)(light.to_light, light.t_light), (float4)(0.0f));
     }
 }
 
 inline void sample_lights(global const Frame* frame, const Vertex* v, global const SceneTriangle* triangles,
                           global const SceneMaterial* materials, global const AreaLight* area_lights,
-                          global const PointLight* point_lights, global float4* paths,
-                          global float4* shadow_rays, global uint* counters) {
+                          global const PointLight* point_lights, global float4* paths, Outbox* shadow_rays) {
     const uint count = frame->sampling.z;
     const bool selects = NEED_PUNCTUAL_LIGHTS || frame->lights.x > MAX_WEIGHED_LIGHTS;
     SampleSet selections, light_points;
@@ -117,13 +115,13 @@ inline void sample_lights(global const Frame* frame, const Vertex* v, global con
             const float2 u = unit_float2(set_codes(&light_points, l));
             const LightSample light = sample_area_light(triangles, materials, area_lights, frame->lights.x,
                                                         &v->surface, u, select.x);
-            connect_light(frame, v, light, sample, paths, shadow_rays, counters);
+            connect_light(frame, v, light, sample, paths, shadow_rays);
             sample += count;
         }
         if (NEED_PUNCTUAL_LIGHTS) {
             const LightSample light =
                 sample_punctual_light(point_lights, frame->lights.y, &v->surface, select.y);
-            connect_light(frame, v, light, sample, paths, shadow_rays, counters);
+            connect_light(frame, v, light, sample, paths, shadow_rays);
         }
     }
 }
@@ -202,9 +200,11 @@ inline void write_first_hit(global const Frame* frame, const Vertex* v, global c
 }
 
 // The local frame, lobes and albedos of a hit.
-inline Vertex make_vertex(global const SceneTriangle* triangle, global const SceneMaterial* material,
-                          global const uchar4* texels, global const float* tables, float3 direction,
-                          float4 hit, float3 throughput) {
+__attribute__((always_inline)) inline Vertex make_vertex(global const SceneTriangle* triangle,
+                                                         global const SceneMaterial* material,
+                                                         global const uchar4* texels,
+                                                         global const float* tables, float3 direction,
+                                                         float4 hit, float3 throughput) {
     Vertex v;
     v.surface = make_surface(triangle, hit.y, hit.z, direction);
     // A shading normal that faces away is bent until it sees the viewer at a grazing angle.
@@ -229,14 +229,16 @@ inline Vertex make_vertex(global const SceneTriangle* triangle, global const Sce
     return v;
 }
 
-kernel void shade(global const Frame* frame, global const SceneTriangle* triangles,
-                  global const SceneMaterial* materials, global const AreaLight* area_lights,
-                  global const PointLight* point_lights, global const uchar4* texels,
-                  global const float* tables, global const float4* rays, global float4* paths,
-                  global float4* next_rays, global float4* shadow_rays, global float4* points,
-                  global uint* counters, uint count, uint depth) {
-    const uint i = (uint)get_global_id(0);
-    if (i >= count) return;
+// What is appended on its way into the queues.
+typedef struct Appends {
+    Outbox rays, shadow_rays, points;
+} Appends;
+
+inline void shade_ray(global const Frame* frame, global const SceneTriangle* triangles,
+                      global const SceneMaterial* materials, global const AreaLight* area_lights,
+                      global const PointLight* point_lights, global const uchar4* texels,
+                      global const float* tables, global const float4* rays, uint i, uint depth,
+                      global float4* paths, Appends* appends, global uint* counters) {
     const uint capacity = frame->crop.w;
     const float4 origin = rays[RAY_ORIGIN * capacity + i];
     const uint slot = as_uint(origin.w);
@@ -287,33 +289,51 @@ kernel void shade(global const Frame* frame, global const SceneTriangle* triangl
     }
 
     if (NEED_LIGHTS) {
-        sample_lights(frame, &v, triangles, materials, area_lights, point_lights, paths, shadow_rays,
-                      counters);
+        sample_lights(frame, &v, triangles, materials, area_lights, point_lights, paths,
+                      &appends->shadow_rays);
     }
     if (NEED_AMBIENT && frame_has(frame, FRAME_AMBIENT) && max_component(v.diffuse) > 0.0f) {
         const bool traced = NEED_OBSCURANCE && frame_has(frame, FRAME_OBSCURANCE);
         paths[path_index(frame, PATH_AMBIENT, slot)] = (float4)(v.throughput * v.diffuse * frame->ambient.xyz,
                                                                 traced ? AMBIENT_TRACED : AMBIENT_CONSTANT);
         if (traced) {
-            const uint p = atomic_inc(&counters[COUNT_POINTS]);
-            points[POINT_POSITION * capacity + p] = (float4)(s->position, as_float(slot));
-            points[POINT_NORMAL * capacity + p] = (float4)(s->n_geo, s->offset);
-            points[POINT_SHADING * capacity + p] = (float4)(s->n_shade, 0.0f);
+            post(&appends->points, (float4)(s->position, as_float(slot)), (float4)(s->n_geo, s->offset),
+                 (float4)(s->n_shade, 0.0f));
         }
     }
     if (NEED_SPECULAR_PATHS && continues_glossy(frame, &v)) {
         float3 next_direction, weight;
         float side, pdf_sr;
         if (sample_continuation(frame, &v, material, &next_direction, &side, &weight, &pdf_sr)) {
-            const uint r = atomic_inc(&counters[COUNT_RAYS]);
             const float3 next_origin = s->position + (side * s->offset) * s->n_geo;
-            next_rays[RAY_ORIGIN * capacity + r] = (float4)(next_origin, as_float(slot));
             // A ray that passes a pane straight on is still the one that was scattered before it.
             const bool passes = side < 0.0f;
-            next_rays[RAY_DIRECTION * capacity + r] =
-                (float4)(next_direction, passes ? ray_direction.w + hit.x : 0.0f);
+            post(&appends->rays, (float4)(next_origin, as_float(slot)),
+                 (float4)(next_direction, passes ? ray_direction.w + hit.x : 0.0f), (float4)(0.0f));
             if (passes) pdf_sr = throughput.w;
             paths[path_index(frame, PATH_THROUGHPUT, slot)] = (float4)(v.throughput * weight, pdf_sr);
         }
     }
+}
+
+kernel void shade(global const Frame* frame, global const SceneTriangle* triangles,
+                  global const SceneMaterial* materials, global const AreaLight* area_lights,
+                  global const PointLight* point_lights, global const uchar4* texels,
+                  global const float* tables, global const float4* rays, global float4* paths,
+                  global float4* next_rays, global float4* shadow_rays, global float4* points,
+                  global uint* counters, uint count, uint depth) {
+    const Share share = share_of(count, 64u);
+    if (share.first == share.last) return;
+    const uint capacity = frame->crop.w;
+    Appends appends;
+    open_outbox(&appends.rays, next_rays, 2u, capacity, &counters[COUNT_RAYS]);
+    open_outbox(&appends.shadow_rays, shadow_rays, SHADOW_LANES, capacity * light_sample_count(frame),
+                &counters[COUNT_SHADOWS]);
+    open_outbox(&appends.points, points, POINT_LANES, capacity, &counters[COUNT_POINTS]);
+    for (uint i = share.first; i < share.last; ++i)
+        shade_ray(frame, triangles, materials, area_lights, point_lights, texels, tables, rays, i, depth,
+                  paths, &appends, counters);
+    send(&appends.rays);
+    send(&appends.shadow_rays);
+    send(&appends.points);
 }

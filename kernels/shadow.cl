@@ -36,7 +36,7 @@ kernel void shadow(global const Frame* frame, global const BvhNode* nodes, globa
                    global const SceneTriangle* triangles, global const SceneMaterial* materials,
                    global const uchar4* texels, global const float* tables, global const float4* shadow_rays,
                    global float4* visibility, global uint* counters) {
-    const Share share = share_of_group(counters[COUNT_SHADOWS]);
+    const Share share = share_of(counters[COUNT_SHADOWS], STREAM_RAYS);
     const uint capacity = frame->crop.w * light_sample_count(frame);
     RayStream stream;
     for (uint first = share.first; first < share.last; first += stream.count) {
@@ -52,12 +52,12 @@ kernel void shadow(global const Frame* frame, global const BvhNode* nodes, globa
             const uint result = as_uint(origin.w);
             if (!check_slot(counters, result, capacity, STAGE_SHADOW, i)) continue;
             const uint ray = i - first;
-            const Hit hit = stream.hits[ray];
+            const Hit hit = stream_hit(&stream, ray);
             bool overflow = isnan(hit.t);
             float3 passed = (float3)(hit.t < stream.t_max[ray] ? 0.0f : 1.0f);
             if (NEED_TRANSMISSION && passed.x > 0.0f && hit.primitive != NO_PRIMITIVE) {
                 passed = transmittance(nodes, blocks, triangles, materials, texels, tables, origin.xyz,
-                                       stream.directions[ray], stream.t_max[ray], &overflow);
+                                       stream_direction(&stream, ray), stream.t_max[ray], &overflow);
             }
             if (overflow) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_SHADOW, i);
             visibility[result] = (float4)(passed, 0.0f);

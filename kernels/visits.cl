@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a ray costs: the production traversal, built so that it counts its visits. For `obscura bench`, which never times
-// this kernel. Camera rays are counted as others are, though they go in packets, whose rays share their visits.
+// this kernel.
 #define COUNT_VISITS
 #include "lib/stream.clh"
 
@@ -8,12 +8,12 @@
 //   counts  nodes, blocks, the most entries on its stack, 1 if it hit something
 kernel void visits(global const BvhNode* nodes, global const TriangleBlock* blocks, global const float4* rays,
                    global uint4* counts, uint count, uint any_hit) {
-    const Share share = share_of_group(count);
+    const Share share = share_of(count, STREAM_RAYS);
     RayStream stream;
     for (uint first = share.first; first < share.last; first += stream.count) {
         trace_packed_rays(nodes, blocks, rays, first, share.last, any_hit != 0u, &stream);
         for (uint ray = 0u; ray < stream.count; ++ray) {
-            const Hit hit = stream.hits[ray];
+            const Hit hit = stream_hit(&stream, ray);
             const uint found = hit.primitive != NO_PRIMITIVE ? 1u : 0u;
             counts[first + ray] = (uint4)(hit.nodes, hit.blocks, hit.entries, found);
         }

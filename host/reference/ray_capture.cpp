@@ -114,19 +114,6 @@ std::vector<uint8_t> DeviceTracer::occluded(std::span<const TraceRay> rays) cons
     return blocked;
 }
 
-std::vector<TraceHit> DeviceTracer::closest_in_packets(std::span<const TraceRay> rays) const {
-    const std::vector<uint32_t> order = coherent_order(rays);
-    std::vector<TraceRay> sorted;
-    sorted.reserve(rays.size());
-    for (const uint32_t i : order)
-        sorted.push_back(rays[i]);
-    const std::vector<TraceHit> found = trace(sorted, RAY_QUERY_PACKETS);
-    std::vector<TraceHit> hits(rays.size());
-    for (size_t i = 0; i < order.size(); ++i)
-        hits[order[i]] = found[i];
-    return hits;
-}
-
 std::vector<TraceHit> DeviceTracer::trace(std::span<const TraceRay> rays, uint32_t query) const {
     if (rays.empty()) return {};
     const Buffer ray_buffer = Buffer::holding(device_, "rays", "check", pack(rays));

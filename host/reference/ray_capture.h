@@ -79,8 +79,10 @@ class DeviceTracer {
     std::vector<TraceHit> closest(std::span<const TraceRay> rays) const {
         return trace(rays, RAY_QUERY_NEAREST);
     }
-    // The same in packets, as camera rays are traced; to the bit. The device gets the rays in the order that fills packets.
-    std::vector<TraceHit> closest_in_packets(std::span<const TraceRay> rays) const;
+    // The same by the walk of single rays, as behind panes; to the bit.
+    std::vector<TraceHit> closest_alone(std::span<const TraceRay> rays) const {
+        return trace(rays, RAY_QUERY_ALONE);
+    }
     // 1 where anything is hit, else 0.
     std::vector<uint8_t> occluded(std::span<const TraceRay> rays) const;
 

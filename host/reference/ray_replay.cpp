@@ -93,9 +93,9 @@ std::string contradiction_of(const Scene& scene, const DeviceTracer& tracer, con
     const bool blocked = tracer.occluded({&ray, 1}).front() != 0;
     if (blocked != (nearest.primitive != NO_PRIMITIVE))
         return blocked ? "any-hit is blocked" : "any-hit is free";
-    const TraceHit in_packet = tracer.closest_in_packets({&ray, 1}).front();
-    if (same_bits(in_packet, nearest)) return {};
-    return "in packets it is " + hit_text(scene, in_packet);
+    const TraceHit alone = tracer.closest_alone({&ray, 1}).front();
+    if (same_bits(alone, nearest)) return {};
+    return "alone it is " + hit_text(scene, alone);
 }
 
 // The device's own reach of the ray must be the given one: behind panes it counts.

@@ -16,7 +16,7 @@ struct RayCheck {
     TraceHit device, embree;
     BruteHit truth;
     Outcome outcome = Outcome::same;
-    // What any-hit queries or packets make of the ray that contradicts the hit; empty: nothing.
+    // What any-hit queries or the walk of single rays make of the ray that contradicts the hit; empty: nothing.
     std::string contradiction = {};
     // Of an obscurance ray what it brings back, of a ray as shadow rays are (reach 1 or endless) the light that comes
     // through; nothing where the render has no such rays.

@@ -94,12 +94,11 @@ QueueCheck check_case(Device& device, ProgramLibrary& library, const std::string
         });
     };
     const std::vector<uint8_t> blocked = tracer.occluded(test.rays);
-    const std::vector<TraceHit> in_packets = tracer.closest_in_packets(test.rays);
+    const std::vector<TraceHit> alone = tracer.closest_alone(test.rays);
     for (size_t i = 0; i < test.rays.size(); ++i) {
         if ((blocked[i] != 0) != (hits[i].primitive != NO_PRIMITIVE))
             count_wrong(i, blocked[i] != 0 ? "blocked" : "free");
-        if (!same_bits(in_packets[i], hits[i]))
-            count_wrong(i, "in packets " + hit_text(test.scene, in_packets[i]));
+        if (!same_bits(alone[i], hits[i])) count_wrong(i, "alone " + hit_text(test.scene, alone[i]));
     }
     return {test.name, std::move(tally), {}, test.aimed};
 }

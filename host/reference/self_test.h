@@ -10,8 +10,8 @@
 
 namespace obscura {
 
-// One row per case. The rays of the first cases go through the traversal alone, and any-hit queries and packets have to
-// agree with closest hits: a ray where they don't counts as wrong. The last rows are the queues of a small render.
+// One row per case. The rays of the first cases go through the traversal alone, and any-hit queries and the walk of
+// single rays have to agree with closest hits: a ray where they don't counts as wrong. The last rows are the queues of a small render.
 // only: part of the names of the cases that are run; all if empty.
 std::vector<QueueCheck> self_test(Device& device, ProgramLibrary& library, bool portable,
                                   const std::string& only);

@@ -69,7 +69,7 @@ constexpr std::array<StageInfo, STAGE_COUNT> STAGES{{
      {frame, tables, sample_order, pixel_order, rays, paths, first_pixel, first_pass, count}},
 
     {Stage::trace, "trace", each_depth, {"trace_camera", "trace_glossy"}, "", always, each, nullptr, nothing,
-     {frame, nodes, blocks, rays, counters, count, depth}},
+     {frame, nodes, blocks, rays, counters, count}},
 
     {Stage::shade, "shade", each_depth, {"shade", "shade"},
      "textures smooth_normals glossy mirror transmission area_lights point_lights spot_lights directional_lights "

@@ -21,11 +21,11 @@
 // Set in a block beside a triangle's index where light passes through it: shadow rays don't end there.
 #define PRIMITIVE_PANE 0x80000000u
 
-// What the kernel trace_rays (check.cl) is asked for: the nearest hit, whether anything is hit, or the nearest hit by packets
-// as camera rays are traced (where the device has them).
+// What the kernel trace_rays (check.cl) is asked for: the nearest hit, whether anything is hit, or the nearest hit of each ray
+// alone, as behind panes.
 #define RAY_QUERY_NEAREST 0u
 #define RAY_QUERY_ANY 1u
-#define RAY_QUERY_PACKETS 2u
+#define RAY_QUERY_ALONE 2u
 
 #ifdef __cplusplus
 namespace obscura {

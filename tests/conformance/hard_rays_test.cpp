@@ -30,7 +30,7 @@ std::string first_text(const HitTally& tally) {
 
 class HardRays : public test::DeviceTest {
   protected:
-    // Hits of both builds, which must be the same, those of packets, and what any-hit says about the same rays.
+    // Hits of both builds, which must be the same, those of single rays, and what any-hit says about the same rays.
     std::vector<TraceHit> trace(const Scene& scene, const std::vector<TraceRay>& rays) {
         const Bvh bvh = build_bvh(scene);
         ProgramLibrary library(device());
@@ -40,10 +40,10 @@ class HardRays : public test::DeviceTest {
             const std::vector<TraceHit> found = tracer.closest(rays);
             const std::vector<uint8_t> blocked = tracer.occluded(rays);
             if (hits.empty()) hits = found;
-            const std::vector<TraceHit> in_packets = tracer.closest_in_packets(rays);
+            const std::vector<TraceHit> alone = tracer.closest_alone(rays);
             for (size_t i = 0; i < rays.size(); ++i) {
                 EXPECT_TRUE(same_bits(found[i], hits[i])) << "ray " << i << " differs in the portable build";
-                EXPECT_TRUE(same_bits(in_packets[i], hits[i])) << "ray " << i << " differs in packets";
+                EXPECT_TRUE(same_bits(alone[i], hits[i])) << "ray " << i << " differs alone";
                 EXPECT_EQ(blocked[i] != 0, hits[i].primitive != NO_PRIMITIVE)
                     << "ray " << i << " with any-hit";
                 if (HasFailure()) return hits;
