@@ -9,11 +9,10 @@
 //   1  direction; w: index of its result
 //   2  t, u, v, primitive of the hit
 //   3  origin - point
-kernel void obscurance_rays(global const Frame* frame, global const BvhNode* nodes,
+SHARE_FUNCTION trace_points(global const Frame* frame, global const BvhNode* nodes,
                             global const TriangleBlock* blocks, global const float4* points,
                             global const float4* paths, global uint* counters, global float4* out,
-                            uint point_count, uint depth) {
-    const Share share = share_of(point_count, 256u);
+                            uint point_count, uint depth, Share share) {
     const uint k_count = frame->sampling.y;
     const uint count = point_count * k_count;
     RayStream stream;
@@ -32,10 +31,18 @@ kernel void obscurance_rays(global const Frame* frame, global const BvhNode* nod
     }
 }
 
+kernel void obscurance_rays(global const Frame* frame, global const BvhNode* nodes,
+                            global const TriangleBlock* blocks, global const float4* points,
+                            global const float4* paths, global uint* counters, global float4* out,
+                            uint point_count, uint depth) {
+    const Share share = share_of(point_count, 256u);
+    if (share.first < share.last)
+        trace_points(frame, nodes, blocks, points, paths, counters, out, point_count, depth, share);
+}
+
 // rays: origin with t_max, direction. query: RAY_QUERY_*
-kernel void trace_rays(global const BvhNode* nodes, global const TriangleBlock* blocks,
-                       global const float4* rays, global float4* hits, uint count, uint query) {
-    const Share share = share_of(count, STREAM_RAYS);
+SHARE_FUNCTION trace_share(global const BvhNode* nodes, global const TriangleBlock* blocks,
+                           global const float4* rays, global float4* hits, uint query, Share share) {
     if (query == RAY_QUERY_ALONE) {
         for (uint i = share.first; i < share.last; ++i)
             hits[i] = hit_lane(
@@ -51,14 +58,19 @@ kernel void trace_rays(global const BvhNode* nodes, global const TriangleBlock* 
     }
 }
 
+kernel void trace_rays(global const BvhNode* nodes, global const TriangleBlock* blocks,
+                       global const float4* rays, global float4* hits, uint count, uint query) {
+    const Share share = share_of(count, STREAM_RAYS);
+    if (share.first < share.last) trace_share(nodes, blocks, rays, hits, query, share);
+}
+
 // What obscurance rays bring back. rays: as above; starts: each origin - point; out, lanes of count: the hits as above; the
 // t at which they are d_max away from their points, up to which hits count; rgb and the same without colours.
-kernel void obscurance_results(global const Frame* frame, global const BvhNode* nodes,
-                               global const TriangleBlock* blocks, global const SceneTriangle* triangles,
-                               global const SceneMaterial* materials, global const uchar4* texels,
-                               global const float* tables, global const float4* rays,
-                               global const float4* starts, global float4* out, uint count) {
-    const Share share = share_of(count, STREAM_RAYS);
+SHARE_FUNCTION result_share(global const Frame* frame, global const BvhNode* nodes,
+                            global const TriangleBlock* blocks, global const SceneTriangle* triangles,
+                            global const SceneMaterial* materials, global const uchar4* texels,
+                            global const float* tables, global const float4* rays,
+                            global const float4* starts, global float4* out, uint count, Share share) {
     RayStream stream;
     for (uint first = share.first; first < share.last; first += stream.count) {
         stream.count = 0u;
@@ -81,4 +93,15 @@ kernel void obscurance_results(global const Frame* frame, global const BvhNode* 
             out[2u * count + i] = overflow ? (float4)(NAN) : result;
         }
     }
+}
+
+kernel void obscurance_results(global const Frame* frame, global const BvhNode* nodes,
+                               global const TriangleBlock* blocks, global const SceneTriangle* triangles,
+                               global const SceneMaterial* materials, global const uchar4* texels,
+                               global const float* tables, global const float4* rays,
+                               global const float4* starts, global float4* out, uint count) {
+    const Share share = share_of(count, STREAM_RAYS);
+    if (share.first < share.last)
+        result_share(frame, nodes, blocks, triangles, materials, texels, tables, rays, starts, out, count,
+                     share);
 }

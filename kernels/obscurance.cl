@@ -8,12 +8,12 @@
 #include "lib/status.clh"
 #include "lib/stream.clh"
 
-kernel void obscurance(global const Frame* frame, global const BvhNode* nodes,
-                       global const TriangleBlock* blocks, global const SceneTriangle* triangles,
-                       global const SceneMaterial* materials, global const uchar4* texels,
-                       global const float* tables, global const float4* points, global const float4* paths,
-                       global float4* results, global uint* counters, uint depth) {
-    const Share share = share_of(counters[COUNT_POINTS], 1024u);
+SHARE_FUNCTION trace_points(global const Frame* frame, global const BvhNode* nodes,
+                            global const TriangleBlock* blocks, global const SceneTriangle* triangles,
+                            global const SceneMaterial* materials, global const uchar4* texels,
+                            global const float* tables, global const float4* points,
+                            global const float4* paths, global float4* results, global uint* counters,
+                            uint depth, Share share) {
     RayStream stream;
     RayOwners owners;
     for (uint next = 0u; next < direction_batches(frame, share);) {
@@ -28,5 +28,17 @@ kernel void obscurance(global const Frame* frame, global const BvhNode* nodes,
                                  stream_direction(&stream, ray), stream_hit(&stream, ray), &overflow);
             if (overflow) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_OBSCURANCE, i);
         }
+    }
+}
+
+kernel void obscurance(global const Frame* frame, global const BvhNode* nodes,
+                       global const TriangleBlock* blocks, global const SceneTriangle* triangles,
+                       global const SceneMaterial* materials, global const uchar4* texels,
+                       global const float* tables, global const float4* points, global const float4* paths,
+                       global float4* results, global uint* counters, uint depth) {
+    const Share share = share_of(counters[COUNT_POINTS], 1024u);
+    if (share.first < share.last) {
+        trace_points(frame, nodes, blocks, triangles, materials, texels, tables, points, paths, results,
+                     counters, depth, share);
     }
 }

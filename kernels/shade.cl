@@ -200,11 +200,9 @@ inline void write_first_hit(global const Frame* frame, const Vertex* v, global c
 }
 
 // The local frame, lobes and albedos of a hit.
-__attribute__((always_inline)) inline Vertex make_vertex(global const SceneTriangle* triangle,
-                                                         global const SceneMaterial* material,
-                                                         global const uchar4* texels,
-                                                         global const float* tables, float3 direction,
-                                                         float4 hit, float3 throughput) {
+INLINED Vertex make_vertex(global const SceneTriangle* triangle, global const SceneMaterial* material,
+                           global const uchar4* texels, global const float* tables, float3 direction,
+                           float4 hit, float3 throughput) {
     Vertex v;
     v.surface = make_surface(triangle, hit.y, hit.z, direction);
     // A shading normal that faces away is bent until it sees the viewer at a grazing angle.
@@ -316,14 +314,12 @@ inline void shade_ray(global const Frame* frame, global const SceneTriangle* tri
     }
 }
 
-kernel void shade(global const Frame* frame, global const SceneTriangle* triangles,
-                  global const SceneMaterial* materials, global const AreaLight* area_lights,
-                  global const PointLight* point_lights, global const uchar4* texels,
-                  global const float* tables, global const float4* rays, global float4* paths,
-                  global float4* next_rays, global float4* shadow_rays, global float4* points,
-                  global uint* counters, uint count, uint depth) {
-    const Share share = share_of(count, 64u);
-    if (share.first == share.last) return;
+SHARE_FUNCTION shade_rays(global const Frame* frame, global const SceneTriangle* triangles,
+                          global const SceneMaterial* materials, global const AreaLight* area_lights,
+                          global const PointLight* point_lights, global const uchar4* texels,
+                          global const float* tables, global const float4* rays, global float4* paths,
+                          global float4* next_rays, global float4* shadow_rays, global float4* points,
+                          global uint* counters, uint depth, Share share) {
     const uint capacity = frame->crop.w;
     Appends appends;
     open_outbox(&appends.rays, next_rays, 2u, capacity, &counters[COUNT_RAYS]);
@@ -336,4 +332,17 @@ kernel void shade(global const Frame* frame, global const SceneTriangle* triangl
     send(&appends.rays);
     send(&appends.shadow_rays);
     send(&appends.points);
+}
+
+kernel void shade(global const Frame* frame, global const SceneTriangle* triangles,
+                  global const SceneMaterial* materials, global const AreaLight* area_lights,
+                  global const PointLight* point_lights, global const uchar4* texels,
+                  global const float* tables, global const float4* rays, global float4* paths,
+                  global float4* next_rays, global float4* shadow_rays, global float4* points,
+                  global uint* counters, uint count, uint depth) {
+    const Share share = share_of(count, OUTBOX_ITEMS);
+    if (share.first < share.last) {
+        shade_rays(frame, triangles, materials, area_lights, point_lights, texels, tables, rays, paths,
+                   next_rays, shadow_rays, points, counters, depth, share);
+    }
 }

@@ -6,10 +6,8 @@
 #include "lib/stream.clh"
 #include "shared/frame.h"
 
-kernel void trace(global const Frame* frame, global const BvhNode* nodes, global const TriangleBlock* blocks,
-                  global float4* rays, global uint* counters, uint count) {
-    const Share share = share_of(count, STREAM_RAYS);
-    const uint capacity = frame->crop.w;
+SHARE_FUNCTION trace_rays(global const BvhNode* nodes, global const TriangleBlock* blocks,
+                          global float4* rays, uint capacity, global uint* counters, Share share) {
     RayStream stream;
     for (uint first = share.first; first < share.last; first += stream.count) {
         stream.count = 0u;
@@ -25,4 +23,10 @@ kernel void trace(global const Frame* frame, global const BvhNode* nodes, global
             rays[RAY_HIT * capacity + i] = hit_lane(hit);
         }
     }
+}
+
+kernel void trace(global const Frame* frame, global const BvhNode* nodes, global const TriangleBlock* blocks,
+                  global float4* rays, global uint* counters, uint count) {
+    const Share share = share_of(count, STREAM_RAYS);
+    if (share.first < share.last) trace_rays(nodes, blocks, rays, frame->crop.w, counters, share);
 }

@@ -33,6 +33,7 @@ if(TARGET obscura)
   obscura_script_test(image interrupt_test)
   obscura_script_test(image options_test)
   obscura_script_test(image output_errors_test)
+  obscura_script_test(image small_stack_test)
   obscura_script_test(image readme_examples_test)
   obscura_script_test(image reference_command_test)
   # R_ave and I_A of every scene against a computation that shares no code with the program.
