@@ -6,10 +6,13 @@
 
 #include "base/error.h"
 #include "bvh/clip.h"
+#include "bvh/parts.h"
 
 #include <embree3/rtcore.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <memory>
 #include <new>
 #include <type_traits>
@@ -73,8 +76,8 @@ void split_part(const RTCBuildPrimitive* primitive, unsigned int axis, float pos
     store(parts.above, *right);
 }
 
-std::vector<RTCBuildPrimitive> build_primitives(const std::vector<Vertices>& vertices, size_t capacity) {
-    std::vector<RTCBuildPrimitive> primitives(capacity);
+std::vector<RTCBuildPrimitive> build_primitives(const std::vector<Vertices>& vertices) {
+    std::vector<RTCBuildPrimitive> primitives(vertices.size());
     for (uint32_t i = 0; i < vertices.size(); ++i) {
         const Box3f box = bounds_of(vertices[i]);
         primitives[i] = {box.min.x, box.min.y, box.min.z, 0, box.max.x, box.max.y, box.max.z, i};
@@ -123,35 +126,26 @@ void flatten(const BuildNode& node, const std::vector<Vertices>& vertices, Binar
 using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, decltype(&rtcReleaseDevice)>;
 using BvhHandle = std::unique_ptr<std::remove_pointer_t<RTCBVH>, decltype(&rtcReleaseBVH)>;
 
-}  // namespace
-
-BinaryTree build_binary_tree(const Scene& scene, BvhQuality quality) {
-    BinaryTree tree;
-    const size_t count = scene.triangles.size();
-    if (count == 0) return tree;
-
+// The tree of one part, at most max_depth nodes deep; empty where it would have to be deeper.
+BinaryTree build_part(const DeviceHandle& device, std::span<const RTCBuildPrimitive> part,
+                      std::vector<Vertices>& vertices, BvhQuality quality, uint32_t max_depth) {
     const bool split = quality == BvhQuality::high;
-    const size_t capacity =
-        count + (split ? static_cast<size_t>(SPLIT_ROOM * static_cast<double>(count)) : 0);
-    std::vector<Vertices> vertices = all_vertices(scene);
-    std::vector<RTCBuildPrimitive> primitives = build_primitives(vertices, capacity);
-
-    const DeviceHandle device(rtcNewDevice(nullptr), rtcReleaseDevice);
-    OBSCURA_CHECK(device != nullptr, "Embree has no device, error {}",
-                  static_cast<int>(rtcGetDeviceError(nullptr)));
+    std::vector<RTCBuildPrimitive> primitives(part.begin(), part.end());
+    primitives.resize(part.size() +
+                      (split ? static_cast<size_t>(SPLIT_ROOM * static_cast<double>(part.size())) : 0));
     const BvhHandle bvh(rtcNewBVH(device.get()), rtcReleaseBVH);
 
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
     arguments.buildQuality = embree_quality(quality);
     arguments.maxBranchingFactor = 2;
-    arguments.maxDepth = MAX_BINARY_DEPTH - (SMALL_SET - 1);  // a swept set may be a chain
+    arguments.maxDepth = max_depth - (SMALL_SET - 1);  // a swept set may be a chain
     arguments.sahBlockSize = BLOCK_WIDTH;
     arguments.minLeafSize = SMALL_SET;
     arguments.maxLeafSize = SMALL_SET;
     arguments.bvh = bvh.get();
     arguments.primitives = primitives.data();
-    arguments.primitiveCount = count;
-    arguments.primitiveArrayCapacity = capacity;
+    arguments.primitiveCount = part.size();
+    arguments.primitiveArrayCapacity = primitives.size();
     arguments.createNode = create_node;
     arguments.setNodeChildren = set_children;
     arguments.setNodeBounds = ignore_bounds;
@@ -163,13 +157,39 @@ BinaryTree build_binary_tree(const Scene& scene, BvhQuality quality) {
     // thread makes the tree a function of the scene alone.
     tbb::task_arena one_thread(1);
     const void* root = one_thread.execute([&] { return rtcBuildBVH(&arguments); });
+    BinaryTree tree;
     if (root == nullptr) return tree;
-
-    tree.references.reserve(capacity);
-    tree.nodes.reserve(2 * capacity);
+    tree.references.reserve(primitives.size());
+    tree.nodes.reserve(2 * primitives.size());
     flatten(*static_cast<const BuildNode*>(root), vertices, tree);
     compute_bounds(tree);
     return tree;
+}
+
+}  // namespace
+
+BinaryTree build_binary_tree(const Scene& scene, BvhQuality quality) {
+    if (scene.triangles.empty()) return {};
+    std::vector<Vertices> vertices = all_vertices(scene);
+    std::vector<RTCBuildPrimitive> primitives = build_primitives(vertices);
+    const std::vector<TopNode> top = cut_into_parts(primitives);
+    std::vector<TopNode> parts;
+    std::ranges::copy_if(top, std::back_inserter(parts),
+                         [](const TopNode& n) { return n.second_child == 0; });
+
+    const DeviceHandle device(rtcNewDevice(nullptr), rtcReleaseDevice);
+    OBSCURA_CHECK(device != nullptr, "Embree has no device, error {}",
+                  static_cast<int>(rtcGetDeviceError(nullptr)));
+    std::vector<BinaryTree> trees(parts.size());
+    tbb::parallel_for(size_t{0}, parts.size(), [&](size_t i) {
+        const std::span part = std::span(primitives).subspan(parts[i].first, parts[i].count);
+        // Spatial splits make a build three times as long. A scene of one part is built quickly anyway.
+        const bool plain = quality == BvhQuality::high && parts.size() > 1 && !has_large_triangles(part);
+        trees[i] = build_part(device, part, vertices, plain ? BvhQuality::medium : quality,
+                              MAX_BINARY_DEPTH - parts[i].depth);
+    });
+    if (std::ranges::any_of(trees, [](const BinaryTree& tree) { return tree.nodes.empty(); })) return {};
+    return trees.size() == 1 ? std::move(trees.front()) : join(top, trees);
 }
 
 }  // namespace obscura

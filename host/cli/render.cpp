@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <string>
 #include <vector>
@@ -118,11 +119,15 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
     const RenderSettings settings = settings_of(options);
     const std::vector<std::string> layers = resolve_layers(out.layers);
     const uint64_t queue_bytes = parse_bytes(options.memory);
+    // The driver starts while the scene is read.
+    std::future<std::unique_ptr<Device>> opening = std::async(
+        std::launch::async, [&] { return std::unique_ptr<Device>(new Device(open_device(options.device))); });
     const Scene scene = load_gltf(scene_file);
     RunSeconds seconds;
     seconds.load = seconds_since(start);
 
-    Device device = open_device(options.device);
+    const std::unique_ptr<Device> opened = opening.get();
+    Device& device = *opened;
     ProgramLibrary library(device, options.local_size);
     catch_interrupts();
     log_info("{}: {}, {}; device {}", scene.name, counted(scene.triangles.size(), "triangle"),

@@ -13,7 +13,8 @@
 //
 // So a kernel is launched once over no items before its program goes to the cache. The last row is the same
 // with PoCL's own cache warm or switched off; source with that cache warm takes 70 to 160 ms. The attribute
-// reqd_work_group_size changes none of these times. PoCL compiles under one lock: threads gain nothing.
+// reqd_work_group_size changes none of these times. PoCL compiles under one lock, whatever the
+// context: threads gain nothing.
 #include "device/program.h"
 
 #include <algorithm>

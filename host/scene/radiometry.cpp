@@ -54,14 +54,19 @@ Radiometry compute_radiometry(const Scene& scene) {
     RgbD reflecting(0, 0, 0);  // sum A_i R_i
     RgbD absorbing(0, 0, 0);   // sum A_i (opacity - R_i): 1 - R_ave without cancellation
     std::vector<double> opacity;
-    for (const Material& material : scene.materials)
+    std::vector<RgbD> untextured;  // reflectivity where no texture changes the base colour
+    for (const Material& material : scene.materials) {
         opacity.push_back(surface_model(material).opacity);
+        untextured.push_back(mean_reflectivity(material, RgbD(material.base_color)));
+    }
     const std::vector<RgbD> base_colors = triangle_base_colors(scene);
     for (uint32_t i = 0; i < scene.triangles.size(); ++i) {
         const uint32_t index = scene.triangles[i].material;
         const Material& material = scene.materials[index];
         const double area = triangle_area(scene, i) * (material.double_sided ? 2 : 1);
-        const RgbD reflectivity = mean_reflectivity(material, base_colors[i]);
+        const RgbD reflectivity = material.base_color_texture == NO_TEXTURE
+                                      ? untextured[index]
+                                      : mean_reflectivity(material, base_colors[i]);
         result.area += area * opacity[index];
         reflecting += area * reflectivity;
         absorbing += area * (RgbD(opacity[index]) - reflectivity);

@@ -78,19 +78,19 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     RenderResult result;
     const RenderSettings settings = with_default_sky(job.scene, job.settings);
     result.settings = settings;
-    result.d_max = resolve_max_distance(settings.d_max, job.scene);
-    result.radiometry = compute_radiometry(job.scene);
-    check_ambient(job.scene, result.radiometry, settings);
+    // An unknown camera is an error before any work is done, and so is a picture that doesn't fit.
+    check_aspect(settings, select_camera(job.scene, settings).aspect_ratio);
     result.needs = analyse_needs(job.scene, settings);
     const LayerPlanes planes = assign_planes(result.needs, wanted_layers(job.layers));
     const PixelRect rect = crop_pixels(settings.crop, settings.width, settings.height);
     check_picture_memory(rect, job.layers, plane_count(planes));
-    // An unknown camera is an error before any work is done.
-    check_aspect(settings, select_camera(job.scene, settings).aspect_ratio);
 
-    // The builder works on one core, the compiler on another.
+    // The builder works on one core, everything up to the upload on another.
     std::future<Bvh> building =
         std::async(std::launch::async, [&] { return build_bvh(job.scene, job.bvh_quality); });
+    result.d_max = resolve_max_distance(settings.d_max, job.scene);
+    result.radiometry = compute_radiometry(job.scene);
+    check_ambient(job.scene, result.radiometry, settings);
     const Stopwatch compile_watch;
     const StageKernels kernels = prepare_kernels(library, result.needs, job);
     result.seconds.compile = compile_watch.seconds();

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks the committed scenes: the kitchen's exact counts, sound geometry, what its camera sees; that the
-generators still write these files. Prints a summary; exit 1 on failure. Needs numpy."""
+"""Checks the scenes: the kitchen's exact counts, sound geometry, what its camera sees; that the generators still
+write the committed files. Prints a summary; exit 1 on failure. Needs numpy."""
 
 import base64
 import json
@@ -77,7 +77,7 @@ def load(path):
         item = document["accessors"][index]
         view = document["bufferViews"][item["bufferView"]]
         width = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}[item["type"]]
-        kind = {5123: "<u2", 5126: "<f4"}[item["componentType"]]
+        kind = {5123: "<u2", 5125: "<u4", 5126: "<f4"}[item["componentType"]]
         offset = view.get("byteOffset", 0) + item.get("byteOffset", 0)
         return np.frombuffer(binary, kind, item["count"] * width, offset).reshape(-1, width)
 
@@ -265,9 +265,36 @@ def check_generators():
             )
 
 
+def check_storeroom():
+    """Made on demand: as large as asked, the same each time, closed to its camera, a smaller one's things in a larger one."""
+    with tempfile.TemporaryDirectory() as folder:
+        paths = [pathlib.Path(folder) / name for name in ("small.glb", "again.glb", "large.glb")]
+        for path, triangles in zip(paths, (30_000, 30_000, 60_000)):
+            subprocess.run(
+                [sys.executable, "-B", GENERATORS / "make_storeroom.py", "--triangles", str(triangles), "-o", path],
+                check=True,
+                stdout=subprocess.DEVNULL,
+            )
+        small, large = load(paths[0]), load(paths[2])
+        expect(paths[0].read_bytes() == paths[1].read_bytes(), "storeroom: two runs write different files")
+        for scene, triangles in ((small, 30_000), (large, 60_000)):
+            count = len(scene.points)
+            expect(abs(count / triangles - 1) < 0.02, f"storeroom: {count} triangles instead of {triangles}")
+            emissive = [i for i, m in enumerate(scene.document["materials"]) if "emissiveFactor" in m]
+            expect(np.isin(scene.materials, emissive).sum() == 6, "storeroom: its lamps are not six triangles")
+        check_geometry("storeroom", small)
+        seen_objects(small, "Camera")
+        places = {node["name"]: node.get("translation") for node in large.document["nodes"]}
+        moved = [n["name"] for n in small.document["nodes"] if places.get(n["name"], ()) != n.get("translation")]
+        posts = {"Board", "Post", "Leg", "Table top", "Shade", "Cord", "Light"}  # many of one name
+        expect(not set(moved) - posts, f"storeroom: in a larger one these lie elsewhere: {', '.join(moved)}")
+        print(f"storeroom: {len(small.points)} and {len(large.points)} triangles")
+
+
 def main():
     check_kitchen()
     check_small()
+    check_storeroom()
     check_generators()
     for message in failures:
         print(f"FAILED: {message}")

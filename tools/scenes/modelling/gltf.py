@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 from .vectors import NO_ROTATION, look_rotation, rotation
 
-FLOAT, USHORT = 5126, 5123
+FLOAT, USHORT, UINT = 5126, 5123, 5125
 ARRAY, ELEMENTS = 34962, 34963
 
 
@@ -19,14 +19,15 @@ class Scene:
         self.nodes = []
         self.roots = []
         self._children = self.roots
-        self._models = []  # in order of first use; instances share one
+        self._models = {}  # by id, in order of first use; instances share one
 
     def add(self, name, model, at=(0.0, 0.0, 0.0), turn=()):
         """`turn`: turns like [("y", 30)], done before the move to `at`."""
-        if not any(m is model for m in self._models):
-            self._models.append(model)
-        index = next(i for i, m in enumerate(self._models) if m is model)
+        index, _ = self._models.setdefault(id(model), (len(self._models), model))
         self._node(name, at, rotation(*turn), {"mesh": index})
+
+    def models(self):
+        return [model for _, model in self._models.values()]
 
     @contextmanager
     def group(self, name, at=(0.0, 0.0, 0.0), turn=()):
@@ -55,11 +56,12 @@ class Scene:
 
     def counts(self):
         """(nodes with a mesh, triangles)"""
-        meshes = [node["mesh"] for node in self.nodes if "mesh" in node]
-        return len(meshes), sum(self._models[m].triangle_count() for m in meshes)
+        triangles = self.triangles_by_name()
+        return len(triangles), sum(count for _, count in triangles)
 
     def triangles_by_name(self):
-        return [(node["name"], self._models[node["mesh"]].triangle_count()) for node in self.nodes if "mesh" in node]
+        counts = [model.triangle_count() for model in self.models()]
+        return [(node["name"], counts[node["mesh"]]) for node in self.nodes if "mesh" in node]
 
     def write(self, path):
         document, binary = _Document(self).finish()
@@ -103,7 +105,9 @@ class _Document:
         self.extensions = set()
 
     def finish(self):
-        meshes = [self._mesh(i, model) for i, model in enumerate(self.scene._models)]
+        # Named after the first node that uses it.
+        names = {node["mesh"]: node["name"] for node in reversed(self.scene.nodes) if "mesh" in node}
+        meshes = [self._mesh(names[i], model) for i, model in enumerate(self.scene.models())]
         materials = [self._material(m) for m in self.materials]
         nodes, cameras = [], []
         for node in self.scene.nodes:
@@ -148,14 +152,16 @@ class _Document:
         }
         return {k: v for k, v in document.items() if v != []}, bytes(binary)
 
-    def _mesh(self, index, model):
-        name = next(n["name"] for n in self.scene.nodes if n.get("mesh") == index)
+    def _mesh(self, name, model):
         return {"name": name, "primitives": [self._primitive(m, s) for m, s in model.parts.items()]}
 
     def _primitive(self, material, surface):
         if material not in self.materials:
             self.materials.append(material)
-        texture = material.texture
+        primitive = surface.arrays(self) if hasattr(surface, "arrays") else self._corners(surface, material.texture)
+        return primitive | {"material": self.materials.index(material)}
+
+    def _corners(self, surface, texture):
         vertices, indices = {}, []
         for corners in surface.triangles:
             for p, n, t in corners:
@@ -173,27 +179,32 @@ class _Document:
         if texture:
             primitive["attributes"]["TEXCOORD_0"] = self._accessor("TEXCOORD_0", [c for v in vertices for c in v[2]], 2)
         primitive["indices"] = self._accessor("indices", indices, 1)
-        primitive["material"] = self.materials.index(material)
         return primitive
 
     def _accessor(self, stream, values, width, bounds=None):
-        data = self.streams[stream]
         integer = stream == "indices"
         if integer:
             assert max(values) < 65535
-        accessor = {
-            "bufferView": stream,
-            "byteOffset": len(data),
-            "componentType": USHORT if integer else FLOAT,
-            "count": len(values) // width,
-            "type": {1: "SCALAR", 2: "VEC2", 3: "VEC3"}[width],
-        }
+        extent = None
         if bounds:
             single = [struct.unpack("<3f", struct.pack("<3f", *p)) for p in bounds]
-            accessor["min"] = [min(p[i] for p in single) for i in range(3)]
-            accessor["max"] = [max(p[i] for p in single) for i in range(3)]
-        data += struct.pack(f"<{len(values)}{'H' if integer else 'f'}", *values)
-        data += bytes(-len(data) % 4)
+            extent = [[pick(p[i] for p in single) for i in range(3)] for pick in (min, max)]
+        data = struct.pack(f"<{len(values)}{'H' if integer else 'f'}", *values)
+        return self.append(stream, data, USHORT if integer else FLOAT, len(values) // width, width, extent)
+
+    def append(self, stream, data, component, count, width, extent=None):
+        """An accessor over bytes that are added to a stream; extent: least and greatest values."""
+        accessor = {
+            "bufferView": stream,
+            "byteOffset": len(self.streams[stream]),
+            "componentType": component,
+            "count": count,
+            "type": {1: "SCALAR", 2: "VEC2", 3: "VEC3"}[width],
+        }
+        if extent:
+            accessor["min"], accessor["max"] = extent
+        self.streams[stream] += data
+        self.streams[stream] += bytes(-len(data) % 4)
         self.accessors.append(accessor)
         return len(self.accessors) - 1
 

@@ -65,6 +65,13 @@ class Model:
         for material, surface in parts:
             self.add(material, surface)
 
+    @classmethod
+    def of_mesh(cls, material, mesh):
+        """Of one ArrayMesh, as it is."""
+        model = cls()
+        model.parts[material] = mesh
+        return model
+
     def add(self, material, *surfaces):
         for surface in surfaces:
             self.parts.setdefault(material, Surface()).extend(surface)
