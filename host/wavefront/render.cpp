@@ -89,13 +89,15 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     check_aspect(settings, select_camera(job.scene, settings).aspect_ratio);
 
     // The builder works on one core, the compiler on another.
-    std::future<Bvh> building =
-        std::async(std::launch::async, [&] { return build_bvh(job.scene, job.bvh_quality); });
+    std::future<Bvh> building;
+    if (job.bvh == nullptr)
+        building = std::async(std::launch::async, [&] { return build_bvh(job.scene, job.bvh_quality); });
     const Stopwatch compile_watch;
     const StageKernels kernels = prepare_kernels(library, result.needs, job);
     result.seconds.compile = compile_watch.seconds();
     const SceneArrays arrays = make_scene_arrays(job.scene, settings.filter);
-    const Bvh bvh = building.get();
+    const Bvh built = job.bvh == nullptr ? building.get() : Bvh();
+    const Bvh& bvh = job.bvh == nullptr ? built : *job.bvh;
     result.seconds.build = bvh.build_seconds;
 
     const Stopwatch upload_watch;
