@@ -13,6 +13,7 @@ endfunction()
 
 obscura_script_test(unit devices_matrix_test)
 obscura_script_test(unit include_order_test)
+obscura_script_test(unit price_needs_test)
 obscura_script_test(unit readme_test)
 obscura_script_test(unit report_test)
 obscura_script_test(unit test_scenes)
