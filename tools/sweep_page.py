@@ -50,37 +50,46 @@ def table(head, rows):
 # --- Plots ---------------------------------------------------------------------------------------------------------
 
 
-def plot_method(axes, sweep, name, layer, abscissa):
-    """RMSE with its interval; the exponent of a fit stands in the legend where the method has no bias."""
+def relative(figures):
+    """Relative RMSE with its interval; noise may make the estimate of a square negative."""
+    return [None if square is None else max(square, 0) ** 0.5 for square in (figures[f"relmse{end}"] for end in ("", "_low", "_high"))]
+
+
+def absolute(figures):
+    return [figures[f"rmse{end}"] for end in ("", "_low", "_high")]
+
+
+def plot_method(axes, sweep, name, layer, abscissa, error):
+    """The error with its interval; the exponent of a fit stands in the legend where the error is a sampler's RMSE."""
     points = [(row[abscissa], layer_of(row, layer)) for row in sweep["methods"][name]]
-    points = [(x, figures) for x, figures in points if figures and figures["rmse"]]
+    points = [(x, *error(figures)) for x, figures in points if figures and error(figures)[0]]
     if not points:
         return
-    x, y = [x for x, _ in points], [figures["rmse"] for _, figures in points]
-    low = [max(0, value - (figures["rmse_low"] or value)) for value, (_, figures) in zip(y, points)]
-    high = [max(0, (figures["rmse_high"] or value) - value) for value, (_, figures) in zip(y, points)]
+    x, y = [point[0] for point in points], [point[1] for point in points]
+    low = [max(0, value - (least or value)) for _, value, least, _ in points]
+    high = [max(0, (most or value) - value) for _, value, _, most in points]
     fit = sweep["convergence"][name].get(layer, {}).get(abscissa)
-    unbiased = sweep["measured_against"][name] == "obscurance" or name == "path"
-    label = f"{name}, slope {fit['exponent']:.2f}" if unbiased and fit else name
+    label = f"{name}, slope {fit['exponent']:.2f}" if error is absolute and fit else name
     axes.errorbar(x, y, yerr=[low, high], label=label, color=COLORS[name], marker="o", markersize=3, linewidth=1.2, capsize=2)
 
 
-def plot_curves(sweep, names, layer, title):
+def plot_curves(sweep, names, layer, title, error=absolute):
     """Error against rays and against time, side by side."""
     figure, axes = plt.subplots(1, 2, figsize=(11, 4.2), sharey=True, layout="constrained")
     for place, abscissa, label in zip(axes, ("rays", "seconds"), ("rays of a picture", "seconds of rendering")):
         for name in names:
             if name in sweep["methods"]:
-                plot_method(place, sweep, name, layer, abscissa)
+                plot_method(place, sweep, name, layer, abscissa, error)
         place.set(xscale="log", yscale="log", xlabel=label)
         place.legend()
-    axes[0].set_ylabel(f"RMSE of {layer}")
+    axes[0].set_ylabel(f"{'relative ' if error is relative else ''}RMSE of {layer}")
     figure.suptitle(title, x=0.01, ha="left")
     return figure
 
 
 def plot_models(sweep):
-    figure = plot_curves(sweep, MODELS, "diffuse", "Models against path-traced light; dotted: what is left with any number of samples")
+    figure = plot_curves(sweep, MODELS, "diffuse", "Models against path-traced light; dotted: what is left with any number of samples",
+                         relative)
     for place in figure.axes:
         for name, found in sweep.get("overtaking", {}).items():
             if name in MODELS and found["floor"]:
@@ -98,7 +107,7 @@ def plot_floors(sweep):
             axes.plot([figures["floor_low"], figures["floor_high"]], [place, place], color="black", linewidth=1)
     axes.set_yticks(range(len(found)), list(found))
     axes.invert_yaxis()
-    axes.set_xlabel("RMSE of diffuse light against path tracing that is left with any number of samples, and its 95 % interval")
+    axes.set_xlabel("relative RMSE of diffuse light against path tracing that is left with any number of samples, and its 95 % interval")
     return figure
 
 
@@ -135,12 +144,12 @@ def crops(folder, sweep, window):
     seconds, rows = equal_time_rows(sweep)
     figures = []
     for name, row in rows.items():
-        caption = f"{name}, {row['samples_per_pixel']} spp, {row['seconds']:.3g} s, RMSE {number(layer_of(row, 'diffuse')['rmse'])}"
+        caption = f"{name}, {row['samples_per_pixel']} spp, {row['seconds']:.3g} s, error {number(relative(layer_of(row, 'diffuse'))[0], '{:.3g}')}"
         figures.append((folder / "pictures" / f"{name}-{row['budget']}.png", caption))
     figures += [(folder / "pictures" / f"reference-{name}.png", f"reference: {name}") for name in sweep["references"]]
     shown = "".join(f'<figure><img src="{crop_png(path, window)}" alt=""><figcaption>{html.escape(caption)}</figcaption></figure>'
                     for path, caption in figures if path.exists())
-    return f"<p>Of each method the picture whose time is nearest to {seconds:.3g} s; RMSE: of diffuse light.</p>{shown}"
+    return f"<p>Of each method the picture whose time is nearest to {seconds:.3g} s; error: relative RMSE of diffuse light.</p>{shown}"
 
 
 # --- Tables --------------------------------------------------------------------------------------------------------
@@ -157,7 +166,7 @@ def variance_table(sweep):
 
 
 def overtaking_table(sweep):
-    return table(["model", "meaning", "RMSE left", "path tracing is better from", "and from"],
+    return table(["model", "meaning", "relative RMSE left", "path tracing is better from", "and from"],
                  [[name, sweep["meaning"][name], interval(found, "floor"),
                    number(found["path_better_after_seconds"], "{:.3g} s"), number(found["path_better_after_rays"], "{:.3g} rays")]
                   for name, found in sweep.get("overtaking", {}).items()])
@@ -214,7 +223,8 @@ def page(folder, sweep, window):
         f"<h1>Speed against error: {html.escape(sweep['scene'])}</h1>", unfinished,
         f"<p>{sweep['width']} × {sweep['height']} pixels, {sweep['seeds']} seeds; medians of interleaved repeats for times, "
         "bars are 95 % intervals. RMSE is what is left when the reference's own variance is subtracted. <i>Diffuse</i> is the "
-        "picture without lights and sky, seen as they are or mirrored: their edges would drown everything else. A <i>budget</i> "
+        "picture without lights and sky, seen as they are or mirrored: their edges would drown everything else. Models are compared by relative RMSE, the root of relMSE, so that the few "
+        "pixels beside a lamp don't decide. A <i>budget</i> "
         "counts obscurance rays per pixel.</p>",
         "<h2>Samplers</h2>", svg(samplers), svg(diffuse),
         "<p>Variance of random points over that of the method, with the same number of rays:</p>", variance_table(sweep),
@@ -232,13 +242,13 @@ def page(folder, sweep, window):
 def main_plot(sweep, path):
     """Two plots for people in a hurry: obscurance against rays by sampler, diffuse light against time by model."""
     figure, axes = plt.subplots(1, 2, figsize=(11, 4.4), layout="constrained")
-    for place, names, layer, abscissa, label, title in (
-            (axes[0], SAMPLERS, "obscurance", "rays", "rays of a picture", "Noise of the obscurances, by sample points"),
-            (axes[1], MODELS, "diffuse", "seconds", "seconds of rendering", "Error of all diffuse light, by model")):
+    for place, names, layer, abscissa, error, label, title in (
+            (axes[0], SAMPLERS, "obscurance", "rays", absolute, "rays of a picture", "Noise of the obscurances, by sample points"),
+            (axes[1], MODELS, "diffuse", "seconds", relative, "seconds of rendering", "Error of all diffuse light, by model")):
         for name in names:
             if name in sweep["methods"]:
-                plot_method(place, sweep, name, layer, abscissa)
-        place.set(xscale="log", yscale="log", xlabel=label, ylabel=f"RMSE of {layer}")
+                plot_method(place, sweep, name, layer, abscissa, error)
+        place.set(xscale="log", yscale="log", xlabel=label, ylabel=f"{'relative ' if error is relative else ''}RMSE of {layer}")
         place.set_title(title, loc="left")
         place.legend()
     figure.savefig(path, dpi=100, metadata={"Software": None})

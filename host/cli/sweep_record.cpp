@@ -28,8 +28,8 @@ Json to_json(const SweepResult& result) {
             errors[title(layer)] = {e.mse, e.relmse, e.mape, e.bias};
         json["runs"].push_back({{"seconds", run.seconds}, {"rays", run.rays}, {"errors", errors}});
     }
-    for (const auto& [layer, product] : result.products)
-        json["products"][title(layer)] = product;
+    for (const auto& [layer, common] : result.common)
+        json["common"][title(layer)] = {common.mse, common.relmse};
     return json;
 }
 
@@ -41,9 +41,9 @@ SweepResult from_json(const Json& json) {
             run.errors[layer_name(layer)] = {e.at(0), e.at(1), e.at(2), e.at(3)};
         result.runs.push_back(std::move(run));
     }
-    if (!json.contains("products")) return result;
-    for (const auto& [layer, product] : json.at("products").items())
-        result.products[layer_name(layer)] = product;
+    if (!json.contains("common")) return result;
+    for (const auto& [layer, common] : json.at("common").items())
+        result.common[layer_name(layer)] = {common.at(0), common.at(1)};
     return result;
 }
 

@@ -35,6 +35,8 @@ std::vector<std::pair<std::string, double>> figures(const LayerSummary& layer) {
     named.emplace_back("bias_standard_error", layer.bias_standard_error);
     add("rms_bias", layer.rms_bias);
     add("variance", layer.variance);
+    add("relative_rms_bias", layer.relative_rms_bias);
+    add("relative_variance", layer.relative_variance);
     named.emplace_back("efficiency", layer.efficiency);
     named.emplace_back("reference_share", layer.reference_share);
     return named;
@@ -145,7 +147,7 @@ void print_overtakings(const SweepReport& report) {
     const auto text = [](const std::optional<double>& x, const auto& format) {
         return x ? format(*x) : std::string("unknown");
     };
-    fmt::print("{:<12}  {:<28}  path tracing is better from\n", "model", "RMSE left at the end");
+    fmt::print("{:<12}  {:<28}  path tracing is better from\n", "model", "relative RMSE that is left");
     for (const Overtaking& o : overtakings) {
         fmt::print("{:<12}  {:<28}  {}, {} rays\n", o.method, interval_text(o.floor),
                    text(o.seconds, duration_text), text(o.rays, si_count));

@@ -98,7 +98,7 @@ std::optional<SweepResult> SweepRenderer::run(const SweepTask& task, const GoOn&
     }
     if (pictures.size() < 2) return result;
     for (const std::string& layer : task.method.layers()) {
-        result.products[layer] = mean_error_product(
+        result.common[layer] = measure_common_errors(
             *pictures[0].find_layer(layer), *pictures[1].find_layer(layer), *reference.find_layer(layer));
     }
     return result;

@@ -43,8 +43,8 @@ struct SweepResult {
     std::string method;
     uint32_t budget = 0;
     uint64_t first_seed = 0;
-    std::vector<SweepRun> runs;              // with the seeds from first_seed on
-    std::map<std::string, double> products;  // of two runs: mean_error_product by layer
+    std::vector<SweepRun> runs;                  // with the seeds from first_seed on
+    std::map<std::string, CommonErrors> common;  // of two runs, by layer
 };
 
 // A reference with what its own noise adds to the errors, by layer.

@@ -57,10 +57,16 @@ LayerErrors measure_errors(const Layer& render, const Layer& reference) {
     return {errors.mse / count, errors.relmse / count, errors.mape / count, errors.bias / count};
 }
 
-double mean_error_product(const Layer& render, const Layer& other, const Layer& reference) {
-    double sum = 0;
-    for_each_value([&](double i, double j, double r) { sum += (i - r) * (j - r); }, render, other, reference);
-    return sum / value_count(render);
+CommonErrors measure_common_errors(const Layer& render, const Layer& other, const Layer& reference) {
+    CommonErrors common;
+    for_each_value(
+        [&](double i, double j, double r) {
+            common.mse += (i - r) * (j - r);
+            common.relmse += relative_square((i - r) * (j - r), r);
+        },
+        render, other, reference);
+    const double count = value_count(render);
+    return {common.mse / count, common.relmse / count};
 }
 
 ReferenceNoise measure_noise(const Layer& reference, const Layer& variance) {

@@ -5,8 +5,8 @@
 //   mse = mean (I - R)^2     relmse = mean (I - R)^2 / (R^2 + 0.01)     mape = mean |I - R| / (|R| + 0.01)
 //   bias = mean (I - R)
 //
-// Two renders I and J with independent seeds tell noise from bias: mean (I - R)(J - R) is, on average, the square of the
-// bias per pixel and channel, and half of mean (I - J)^2 the variance.
+// Two renders I and J with independent seeds tell noise from bias: mean (I - R)(J - R), the common part of mse, is on average
+// the square of the bias per pixel and channel, and mse without it the variance. So it is with relmse.
 #pragma once
 
 #include "film/image.h"
@@ -17,6 +17,11 @@ struct LayerErrors {
     double mse = 0, relmse = 0, mape = 0, bias = 0;
 };
 
+// What the errors of two renders have in common.
+struct CommonErrors {
+    double mse = 0, relmse = 0;
+};
+
 // The part of these errors that is the reference's own: what its variance adds to each on average, and the standard error
 // of its mean over pixels and channels.
 struct ReferenceNoise {
@@ -25,7 +30,7 @@ struct ReferenceNoise {
 
 // Of layers of the same size that have channels R, G, B; others (alpha) don't count.
 LayerErrors measure_errors(const Layer& render, const Layer& reference);
-double mean_error_product(const Layer& render, const Layer& other, const Layer& reference);
+CommonErrors measure_common_errors(const Layer& render, const Layer& other, const Layer& reference);
 // variance: of the reference's values.
 ReferenceNoise measure_noise(const Layer& reference, const Layer& variance);
 

@@ -5,9 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 namespace obscura {
 namespace {
+
+const Estimate UNKNOWN{std::nan(""), std::nan(""), std::nan("")};
 
 // The runs of one method and budget, in the order of their seeds.
 struct Cell {
@@ -63,14 +67,19 @@ LayerSummary summarise_layer(const Cell& cell, const std::string& layer, const R
     summary.bias.low = summary.bias.value - spread * summary.bias_standard_error;
     summary.bias.high = summary.bias.value + spread * summary.bias_standard_error;
 
-    const auto product = [&](const SweepResult& pair) { return pair.products.at(layer); };
-    const auto variance = [&](const SweepResult& pair) {
-        return (pair.runs[0].errors.at(layer).mse + pair.runs[1].errors.at(layer).mse) / 2 - product(pair);
+    const auto separate = [&](double LayerErrors::*error, double CommonErrors::*common, double subtracted) {
+        if (cell.pairs.empty()) return std::pair(UNKNOWN, UNKNOWN);
+        const auto bias = [&](const SweepResult& pair) { return pair.common.at(layer).*common; };
+        const auto variance = [&](const SweepResult& pair) {
+            const double both = pair.runs[0].errors.at(layer).*error + pair.runs[1].errors.at(layer).*error;
+            return both / 2 - bias(pair);
+        };
+        return std::pair(root(less(estimate_mean(values_of(cell.pairs, bias)), subtracted)),
+                         estimate_mean(values_of(cell.pairs, variance)));
     };
-    summary.rms_bias = summary.variance = {std::nan(""), std::nan(""), std::nan("")};
-    if (cell.pairs.empty()) return summary;
-    summary.rms_bias = root(less(estimate_mean(values_of(cell.pairs, product)), noise.mse));
-    summary.variance = estimate_mean(values_of(cell.pairs, variance));
+    std::tie(summary.rms_bias, summary.variance) = separate(&LayerErrors::mse, &CommonErrors::mse, noise.mse);
+    std::tie(summary.relative_rms_bias, summary.relative_variance) =
+        separate(&LayerErrors::relmse, &CommonErrors::relmse, noise.relmse);
     return summary;
 }
 
@@ -89,16 +98,17 @@ std::optional<CellSummary> summarise_cell(const SweepMethod& method, uint32_t bu
     return summary;
 }
 
-// Exponents of the errors of each seed, fitted to that seed's pictures of all budgets: independent of each other.
+// Exponents of the errors of each seed that all budgets have: independent of each other.
 std::optional<Estimate> fit_exponent(const std::vector<Cell>& cells, const std::vector<double>& abscissas,
                                      const std::string& layer, double noise) {
     std::vector<double> exponents;
-    for (size_t seed = 0; seed < cells.front().runs.size(); ++seed) {
+    size_t seeds = cells.front().runs.size();
+    for (const Cell& cell : cells)
+        seeds = std::min(seeds, cell.runs.size());
+    for (size_t seed = 0; seed < seeds; ++seed) {
         std::vector<double> squares;
-        for (const Cell& cell : cells) {
-            if (seed >= cell.runs.size()) return std::nullopt;
+        for (const Cell& cell : cells)
             squares.push_back(cell.runs[seed]->errors.at(layer).mse - noise);
-        }
         const std::optional<PowerLaw> law = fit_power_law(abscissas, squares);
         if (!law) return std::nullopt;
         exponents.push_back(law->exponent / 2);
@@ -107,7 +117,7 @@ std::optional<Estimate> fit_exponent(const std::vector<Cell>& cells, const std::
 }
 
 struct Curve {
-    std::vector<double> seconds, rays, mse, variance;
+    std::vector<double> seconds, rays, relmse, variance;
 };
 
 Curve curve_of(const MethodSummary& summary) {
@@ -116,8 +126,8 @@ Curve curve_of(const MethodSummary& summary) {
         const LayerSummary& diffuse = cell.layers.at(reference::DIFFUSE_LAYER);
         curve.seconds.push_back(cell.seconds.median);
         curve.rays.push_back(cell.rays);
-        curve.mse.push_back(diffuse.rmse.value * diffuse.rmse.value);
-        curve.variance.push_back(diffuse.variance.value);
+        curve.relmse.push_back(diffuse.relmse.value);
+        curve.variance.push_back(diffuse.relative_variance.value);
     }
     return curve;
 }
@@ -172,14 +182,14 @@ std::vector<Overtaking> find_overtakings(std::span<const MethodSummary> methods)
             continue;
         const Curve curve = curve_of(summary);
         // The largest budget's, which has least noise.
-        const Estimate& floor = summary.cells.back().layers.at(reference::DIFFUSE_LAYER).rms_bias;
+        const Estimate& floor = summary.cells.back().layers.at(reference::DIFFUSE_LAYER).relative_rms_bias;
         found.push_back({summary.method.name, floor, std::nullopt, std::nullopt});
         if (!(floor.low > 0)) continue;  // within the noise
         const double square = floor.value * floor.value;
         found.back().seconds =
-            overtaking_by(path_curve.seconds, path_curve.mse, curve.seconds, curve.variance, square);
+            overtaking_by(path_curve.seconds, path_curve.relmse, curve.seconds, curve.variance, square);
         found.back().rays =
-            overtaking_by(path_curve.rays, path_curve.mse, curve.rays, curve.variance, square);
+            overtaking_by(path_curve.rays, path_curve.relmse, curve.rays, curve.variance, square);
     }
     return found;
 }

@@ -20,8 +20,9 @@ struct LayerSummary {
     Estimate rmse, relmse, mape;
     Estimate bias;  // the mean error; the interval is due to the reference too
     double bias_standard_error = 0;
-    Estimate rms_bias;           // root of the mean squared bias of pixels and channels
-    Estimate variance;           // mean over pixels and channels
+    Estimate rms_bias;                              // root of the mean squared bias of pixels and channels
+    Estimate variance;                              // mean over pixels and channels
+    Estimate relative_rms_bias, relative_variance;  // the same of relmse
     double reference_share = 0;  // of the squared error: what was subtracted as the reference's
     double efficiency = 0;       // 1 / (mse s)
 };
@@ -49,7 +50,7 @@ struct MethodSummary {
 // Where path tracing becomes better than a model that stays at a floor.
 struct Overtaking {
     std::string method;
-    Estimate floor;                       // RMSE of the diffuse light that is left with any number of samples
+    Estimate floor;  // of the diffuse light: its relative RMS bias, which is left with any number of samples
     std::optional<double> seconds, rays;  // of a picture; nothing if it can't be told
 };
 

@@ -31,8 +31,9 @@ TEST(SweepErrors, AreThoseOfTheColors) {
     EXPECT_DOUBLE_EQ(errors.relmse, (1 / 1.01 + 1 / 0.01) / 6);
     EXPECT_DOUBLE_EQ(errors.mape, (1 / 1.01 + 1 / 0.01) / 6);
     EXPECT_DOUBLE_EQ(errors.bias, 0);
-    // (1 * 3 + (-1) * 2) / 6
-    EXPECT_DOUBLE_EQ(mean_error_product(render, rgb("", {4, 2, 0, 0, 0, 2}), reference), 1.0 / 6);
+    const CommonErrors common = measure_common_errors(render, rgb("", {4, 2, 0, 0, 0, 2}), reference);
+    EXPECT_DOUBLE_EQ(common.mse, (1.0 * 3 - 1 * 2) / 6);
+    EXPECT_DOUBLE_EQ(common.relmse, (1.0 * 3 / 1.01 - 1 * 2 / 0.01) / 6);
 }
 
 TEST(SweepErrors, NoiseIsTheReferencesVariance) {
@@ -56,11 +57,11 @@ TEST(SweepErrors, PairsTellBiasFromNoise) {
     };
     const Layer reference = noisy(1, REFERENCE_NOISE);
     const Layer first = noisy(1 + BIAS, NOISE), second = noisy(1 + BIAS, NOISE);
-    const double product = mean_error_product(first, second, reference);
+    const double common = measure_common_errors(first, second, reference).mse;
     const double mse = (measure_errors(first, reference).mse + measure_errors(second, reference).mse) / 2;
     const double subtracted = measure_noise(reference, rgb("", std::vector<float>(VALUES, 0.04f))).mse;
-    EXPECT_NEAR(product - subtracted, BIAS * BIAS, 5e-3);
-    EXPECT_NEAR(mse - product, NOISE * NOISE, 5e-3);
+    EXPECT_NEAR(common - subtracted, BIAS * BIAS, 5e-3);
+    EXPECT_NEAR(mse - common, NOISE * NOISE, 5e-3);
     EXPECT_NEAR(mse - subtracted, BIAS * BIAS + NOISE * NOISE, 5e-3);
 }
 
@@ -126,7 +127,7 @@ TEST(SweepPlan, GoesThroughAllMethodsTwoSeedsAtATime) {
 
 // A result whose two runs have the errors of this one in every layer.
 SweepResult result(const std::string& method, uint32_t budget, uint64_t seed, std::array<double, 2> mse,
-                   double product, double seconds) {
+                   double common, double seconds) {
     SweepResult made{method, budget, seed, {}, {}};
     for (size_t i = 0; i < 2; ++i) {
         SweepRun run{seconds * static_cast<double>(i + 1), budget * 100, {}};
@@ -135,7 +136,7 @@ SweepResult result(const std::string& method, uint32_t budget, uint64_t seed, st
         made.runs.push_back(run);
     }
     for (const char* layer : {"", DIFFUSE_LAYER, "obscurance"})
-        made.products[layer] = product;
+        made.common[layer] = {common, 2 * common};
     return made;
 }
 
@@ -168,6 +169,8 @@ TEST(SweepSummary, SubtractsTheReferencesNoise) {
     EXPECT_NEAR(beauty.efficiency, 1 / (0.16 * 3), 1e-12);
     EXPECT_NEAR(beauty.rms_bias.value, 0.2, 1e-12);  // sqrt(0.05 - 0.01)
     EXPECT_NEAR(beauty.variance.value, 0.12, 1e-12);
+    EXPECT_NEAR(beauty.relative_rms_bias.value, std::sqrt(0.10 - 0.02), 1e-12);
+    EXPECT_NEAR(beauty.relative_variance.value, 0.24, 1e-12);
     EXPECT_TRUE(std::isnan(beauty.variance.low)) << "one pair";
     // Seeds: 0.1 and 0.3, standard error 0.1; the reference's 0.03.
     EXPECT_NEAR(beauty.bias.value, 0.2, 1e-12);
@@ -212,7 +215,7 @@ TEST(SweepSummary, FindsWherePathTracingIsBetterThanAModel) {
     const auto found = find_overtakings(summaries);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].method, "ao");
-    EXPECT_NEAR(found[0].floor.value, std::sqrt(0.001), 1e-9);
+    EXPECT_NEAR(found[0].floor.value, std::sqrt(0.002), 1e-9) << "of the relative error, twice the other";
     ASSERT_TRUE(found[0].rays);
     EXPECT_NEAR(*found[0].rays, 2000, 1e-3);
     EXPECT_FALSE(found[0].seconds) << "all budgets took as long";
