@@ -18,6 +18,7 @@
 #include "cli/merge.h"
 #include "cli/reference.h"
 #include "cli/render.h"
+#include "cli/sweep.h"
 
 namespace obscura {
 namespace {
@@ -48,6 +49,7 @@ ExitCode run(int argc, char** argv) {
     add_merge_command(app, exit_code);
     add_reference_command(app, exit_code);
     add_render_command(app, exit_code);
+    add_sweep_command(app, exit_code);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -64,8 +64,9 @@ ExitCode run_reference(const CLI::App& command, const RenderOptions& options, co
     catch_interrupts();
     log_info("{}: {}, {}", scene.name, counted(scene.triangles.size(), "triangle"),
              counted(scene.objects.size(), "object"));
+    const std::string previous_name = "--resume: " + own.output;
     const reference::ReferenceJob job{
-        scene, settings, own.integrator, own.sets, previous ? &*previous : nullptr, own.output};
+        scene, settings, own.integrator, own.sets, previous ? &*previous : nullptr, previous_name};
     Progress progress("reference", "path");
     const reference::ReferenceResult result = render_reference(job, [&](double fraction, uint64_t samples) {
         progress.update(fraction, samples);

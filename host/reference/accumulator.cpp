@@ -17,10 +17,16 @@ namespace {
 // The numbers of a pixel.
 constexpr size_t PARTS = 0;                      // rgb of each part: sum over all passes
 constexpr size_t COVERAGE = 3 * BEAUTY_LAYERS;   // sum over all passes
-constexpr size_t SET = COVERAGE + 1;             // rgb of beauty: sum over the unfinished set
+constexpr size_t OBSCURANCE = COVERAGE + 1;      // rgb: sum over all passes
+constexpr size_t BEAUTY_SETS = OBSCURANCE + 3;   // of beauty, SET_VALUES numbers
+constexpr size_t SET = 0;                        // rgb: sum over the unfinished set
 constexpr size_t SET_MEAN = SET + 3;             // rgb: mean of the finished sets' means
 constexpr size_t SET_DEVIATIONS = SET_MEAN + 3;  // rgb: sum of their squared deviations from it
-constexpr size_t VALUE_COUNT = SET_DEVIATIONS + 3;
+constexpr size_t SET_VALUES = SET_DEVIATIONS + 3;
+constexpr size_t DIFFUSE_SETS =
+    BEAUTY_SETS + SET_VALUES;  // the same of the diffuse light, and of the obscurance
+constexpr size_t OBSCURANCE_SETS = DIFFUSE_SETS + SET_VALUES;
+constexpr size_t VALUE_COUNT = OBSCURANCE_SETS + SET_VALUES;
 
 constexpr const char* HIGH_LAYER = "state.high";
 constexpr const char* LOW_LAYER = "state.low";
@@ -37,6 +43,19 @@ void add(double& sum, double value) {
     sum = storable(sum + value);
 }
 
+void add(double* sums, const RgbD& value) {
+    for (size_t c = 0; c < 3; ++c)
+        add(sums[c], value[static_cast<int>(c)]);
+}
+
+// As PathLight::diffuse().
+double diffuse_sum(const double* pixel, size_t channel) {
+    double sum = 0;
+    for (const size_t part : {LAYER_DIRECT, LAYER_AMBIENT, LAYER_SPECULAR_DIRECT, LAYER_SPECULAR_AMBIENT})
+        sum += pixel[PARTS + 3 * part + channel];
+    return sum;
+}
+
 std::vector<std::string> state_channels() {
     std::vector<std::string> names;
     for (size_t i = 0; i < VALUE_COUNT; ++i)
@@ -50,7 +69,7 @@ Accumulator::Accumulator(size_t pixel_count, uint32_t passes_per_set)
     : passes_per_set_(passes_per_set), values_(pixel_count * VALUE_COUNT) {}
 
 uint64_t Accumulator::bytes_per_pixel() {
-    constexpr uint64_t CHANNELS = 4 + 3 * BEAUTY_LAYERS + 3 + 2 * VALUE_COUNT;  // see develop()
+    constexpr uint64_t CHANNELS = 4 + 3 * (BEAUTY_LAYERS + 5) + 2 * VALUE_COUNT;  // see develop()
     return VALUE_COUNT * sizeof(double) + CHANNELS * sizeof(float);
 }
 
@@ -62,26 +81,29 @@ void Accumulator::add_pass(std::span<const PathLight> pixels) {
         double* const pixel = &values_[p * VALUE_COUNT];
         RgbD beauty(0);
         for (size_t part = 0; part < BEAUTY_LAYERS; ++part) {
-            const RgbD& value = pixels[p].parts[part];
-            beauty += value;
-            for (size_t c = 0; c < 3; ++c)
-                add(pixel[PARTS + 3 * part + c], value[static_cast<int>(c)]);
+            beauty += pixels[p].parts[part];
+            add(&pixel[PARTS + 3 * part], pixels[p].parts[part]);
         }
         add(pixel[COVERAGE], pixels[p].coverage);
-        for (size_t c = 0; c < 3; ++c)
-            add(pixel[SET + c], beauty[static_cast<int>(c)]);
-        if (passes_ % passes_per_set_ == 0) close_set(pixel);
+        add(&pixel[OBSCURANCE], pixels[p].obscurance);
+        add(&pixel[BEAUTY_SETS + SET], beauty);
+        add(&pixel[DIFFUSE_SETS + SET], pixels[p].diffuse());
+        add(&pixel[OBSCURANCE_SETS + SET], pixels[p].obscurance);
+        if (passes_ % passes_per_set_ != 0) continue;
+        close_set(&pixel[BEAUTY_SETS]);
+        close_set(&pixel[DIFFUSE_SETS]);
+        close_set(&pixel[OBSCURANCE_SETS]);
     }
 }
 
 // Welford 1962.
-void Accumulator::close_set(double* pixel) const {
+void Accumulator::close_set(double* sets) const {
     for (size_t c = 0; c < 3; ++c) {
-        const double value = pixel[SET + c] / passes_per_set_;
-        const double before = value - pixel[SET_MEAN + c];
-        add(pixel[SET_MEAN + c], before / static_cast<double>(finished_sets()));
-        add(pixel[SET_DEVIATIONS + c], before * (value - pixel[SET_MEAN + c]));
-        pixel[SET + c] = 0;
+        const double value = sets[SET + c] / passes_per_set_;
+        const double before = value - sets[SET_MEAN + c];
+        add(sets[SET_MEAN + c], before / static_cast<double>(finished_sets()));
+        add(sets[SET_DEVIATIONS + c], before * (value - sets[SET_MEAN + c]));
+        sets[SET + c] = 0;
     }
 }
 
@@ -89,8 +111,13 @@ void Accumulator::develop(Image& image, bool parts) const {
     const auto n = static_cast<double>(passes_);
     const auto sets = static_cast<double>(finished_sets());
     const bool known_variance = finished_sets() >= 2;
+    const std::vector<std::string> rgb{"R", "G", "B"};
     Layer beauty{"", {"R", "G", "B", "A"}, {}};
-    Layer variance{"Variance", {"R", "G", "B"}, {}};
+    Layer diffuse{DIFFUSE_LAYER, rgb, {}};
+    Layer obscurance{layer_info("obscurance").name, rgb, {}};
+    Layer variance{VARIANCE_LAYER, rgb, {}};
+    Layer diffuse_variance{DIFFUSE_VARIANCE_LAYER, rgb, {}};
+    Layer obscurance_variance{OBSCURANCE_VARIANCE_LAYER, rgb, {}};
     Layer high{HIGH_LAYER, state_channels(), {}};
     Layer low{LOW_LAYER, state_channels(), {}};
     std::vector<Layer> part_layers;
@@ -109,8 +136,15 @@ void Accumulator::develop(Image& image, bool parts) const {
                 part_layers[part].pixels.push_back(static_cast<float>(value / n));
             }
             beauty.pixels.push_back(static_cast<float>(sum / n));
-            if (known_variance)
-                variance.pixels.push_back(static_cast<float>(pixel[SET_DEVIATIONS + c] / (sets - 1) / sets));
+            diffuse.pixels.push_back(static_cast<float>(diffuse_sum(pixel, c) / n));
+            obscurance.pixels.push_back(static_cast<float>(pixel[OBSCURANCE + c] / n));
+            if (!known_variance) continue;
+            const auto variance_of_mean = [&](size_t of) {
+                return static_cast<float>(pixel[of + SET_DEVIATIONS + c] / (sets - 1) / sets);
+            };
+            variance.pixels.push_back(variance_of_mean(BEAUTY_SETS));
+            diffuse_variance.pixels.push_back(variance_of_mean(DIFFUSE_SETS));
+            obscurance_variance.pixels.push_back(variance_of_mean(OBSCURANCE_SETS));
         }
         beauty.pixels.push_back(static_cast<float>(pixel[COVERAGE] / n));
         for (size_t i = 0; i < VALUE_COUNT; ++i) {
@@ -119,8 +153,14 @@ void Accumulator::develop(Image& image, bool parts) const {
         }
     }
     image.layers.push_back(std::move(beauty));
-    if (parts) std::ranges::move(part_layers, std::back_inserter(image.layers));
+    image.layers.push_back(std::move(diffuse));
+    if (parts) {
+        std::ranges::move(part_layers, std::back_inserter(image.layers));
+        image.layers.push_back(std::move(obscurance));
+    }
     if (known_variance) image.layers.push_back(std::move(variance));
+    if (known_variance) image.layers.push_back(std::move(diffuse_variance));
+    if (known_variance && parts) image.layers.push_back(std::move(obscurance_variance));
     image.layers.push_back(std::move(high));
     image.layers.push_back(std::move(low));
 }

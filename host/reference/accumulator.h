@@ -12,6 +12,13 @@
 
 namespace obscura::reference {
 
+// What some diffuse surface has reflected: beauty without lights and sky, seen as they are or mirrored.
+inline constexpr const char* DIFFUSE_LAYER = "diffuse";
+// The variance of the means of beauty, of that, and of the obscurance.
+inline constexpr const char* VARIANCE_LAYER = "Variance";
+inline constexpr const char* DIFFUSE_VARIANCE_LAYER = "Variance.diffuse";
+inline constexpr const char* OBSCURANCE_VARIANCE_LAYER = "Variance.obscurance";
+
 class Accumulator {
   public:
     // passes_per_set: samples of a pixel in a set.
@@ -26,14 +33,14 @@ class Accumulator {
     uint64_t passes() const { return passes_; }
     uint64_t finished_sets() const { return passes_ / passes_per_set_; }
 
-    // Appends beauty, with parts the layers it consists of, the variance of beauty's mean once two sets are finished,
-    // and the state.
+    // Appends beauty and diffuse, with parts the layers it consists of and the obscurance, the variance of these means once
+    // two sets are finished, and the state.
     void develop(Image& image, bool parts) const;
     // Takes the state of a picture of `passes` passes; false if it holds none.
     bool restore(const Image& image, uint64_t passes);
 
   private:
-    void close_set(double* pixel) const;
+    void close_set(double* sets) const;
 
     uint32_t passes_per_set_;
     uint64_t passes_ = 0;

@@ -128,7 +128,7 @@ void describe_progress(uint64_t passes, uint64_t finished_sets, ReferenceResult&
 uint64_t passes_to_continue(const Image& previous, std::string_view file, const Image& image) {
     if (!previous.attributes.contains(attribute::INTEGRATOR)) {
         const bool rendered = previous.attributes.contains(attribute::OBSCURANCE_RAYS);
-        throw InputError("--resume: {} was not made by obscura reference{}", file,
+        throw InputError("{} was not made by obscura reference{}", file,
                          rendered ? ", but by obscura render" : "");
     }
     const auto check = [&](const Shaper& shaper) {
@@ -136,10 +136,10 @@ uint64_t passes_to_continue(const Image& previous, std::string_view file, const 
         if (wanted == image.attributes.end()) return;  // a path tracer ignores it
         const auto found = previous.attributes.find(shaper.attribute);
         if (found == previous.attributes.end())
-            throw InputError("--resume: {}: its header has no {}", file, shaper.attribute);
+            throw InputError("{}: its header has no {}", file, shaper.attribute);
         if (stored(found->second) == stored(wanted->second)) return;
-        throw InputError("--resume: {} was made {} ({}: {}, not {})", file, shaper.difference,
-                         shaper.attribute, attribute_text(found->second), attribute_text(wanted->second));
+        throw InputError("{} was made {} ({}: {}, not {})", file, shaper.difference, shaper.attribute,
+                         attribute_text(found->second), attribute_text(wanted->second));
     };
     check(SHAPERS.front());
     const auto window = [](const Image& i) {
@@ -147,9 +147,8 @@ uint64_t passes_to_continue(const Image& previous, std::string_view file, const 
                            i.x1, i.y0, i.y1);
     };
     if (window(previous) != window(image))
-        throw InputError(
-            "--resume: {} was made with another --width, --height or --cropwindow (pixels: {}, not {})", file,
-            window(previous), window(image));
+        throw InputError("{} was made with another --width, --height or --cropwindow (pixels: {}, not {})",
+                         file, window(previous), window(image));
     std::ranges::for_each(SHAPERS, check);
     // And whatever else the header tells of, now or one day.
     for (const auto& [name, value] : image.attributes)
@@ -159,7 +158,7 @@ uint64_t passes_to_continue(const Image& previous, std::string_view file, const 
     const auto end = previous.attributes.end();
     if (passes == end || !std::holds_alternative<int64_t>(passes->second) || seconds == end ||
         !std::holds_alternative<double>(seconds->second) || std::get<int64_t>(passes->second) < 1) {
-        throw InputError("--resume: {}: its header doesn't tell how far it is", file);
+        throw InputError("{}: its header doesn't tell how far it is", file);
     }
     return static_cast<uint64_t>(std::get<int64_t>(passes->second));
 }

@@ -18,8 +18,16 @@ enum class IntegratorKind { obscurance, path };
 struct PathLight {
     std::array<RgbD, BEAUTY_LAYERS> parts;  // radiance by LAYER_*; their sum is the pixel's
     double coverage = 0;                    // 1 if the ray hit anything
+    RgbD obscurance{0, 0, 0};               // W at the first hit with a diffuse part
+    // Traced for it, counted as the kernels' queues do: a shadow or obscurance ray that passes panes is one.
+    uint32_t rays = 0;
 
     PathLight() { parts.fill(RgbD(0)); }
+    // Of the sum, what some diffuse surface has reflected: all but lights and sky, seen as they are or mirrored.
+    RgbD diffuse() const {
+        return parts[LAYER_DIRECT] + parts[LAYER_AMBIENT] + parts[LAYER_SPECULAR_DIRECT] +
+               parts[LAYER_SPECULAR_AMBIENT];
+    }
 };
 
 class Integrator {
@@ -33,8 +41,8 @@ class Integrator {
 std::unique_ptr<Integrator> make_obscurance_integrator(const World& world, const RenderSettings& settings,
                                                        const Radiometry& radiometry, double d_max);
 
-// All light by unbiased path tracing, with diffuse interreflection in place of obscurances. Everything is in the first
-// part, LAYER_EMISSION.
+// All light by unbiased path tracing, with diffuse interreflection in place of obscurances. What no diffuse surface has
+// reflected is in LAYER_EMISSION, the rest in LAYER_DIRECT.
 std::unique_ptr<Integrator> make_path_integrator(const World& world, const RenderSettings& settings);
 
 }  // namespace obscura::reference

@@ -66,9 +66,11 @@ ObscuranceIntegrator::ObscuranceIntegrator(const World& world, const RenderSetti
 
 PathLight ObscuranceIntegrator::estimate(const Ray& camera_ray, const PathSampler& sampler) const {
     PathLight light;
+    bool obscurance_seen = false;
     std::optional<PathState> path = PathState{camera_ray};
     while (path) {
         const bool first = path->depth == 0;
+        ++light.rays;
         RgbD& emission = light.parts[first ? LAYER_EMISSION : LAYER_SPECULAR_EMISSION];
         const Hit hit = world_.tracer.nearest(path->ray);
         if (!hit.found()) {
@@ -85,7 +87,13 @@ PathLight ObscuranceIntegrator::estimate(const Ray& camera_ray, const PathSample
         const Vertex vertex{*path, surface, Bsdf(surface, path->ray.direction)};
         add_lights(vertex, sampler, light);
         if (ambient_ && max_component(vertex.bsdf.diffuse()) > 0) {
-            const RgbD w = traced_ ? obscurance(vertex, sampler) : RgbD(1);
+            RgbD w(1);
+            if (traced_) {
+                w = obscurance(vertex, sampler);
+                light.rays += settings_.obscurance_rays;
+                if (!obscurance_seen) light.obscurance = w;
+                obscurance_seen = true;
+            }
             light.parts[first ? LAYER_AMBIENT : LAYER_SPECULAR_AMBIENT] +=
                 path->throughput * vertex.bsdf.diffuse() * ambient_light_ * w;
         }
@@ -135,6 +143,7 @@ void ObscuranceIntegrator::add_light(const Vertex& vertex, const LightSample& sa
                  (shared ? power_heuristic(settings_.light_samples * sample.pdf_sr, lobe.pdf_sr) : 1.0);
     }
     if (!(max_component(diffuse + glossy) > 0)) return;
+    ++light.rays;
     const RgbD seen = world_.transmittance(vertex.surface, sample);
     light.parts[vertex.path.depth == 0 ? LAYER_DIRECT : LAYER_SPECULAR_DIRECT] += diffuse * seen;
     light.parts[LAYER_SPECULAR_EMISSION] += glossy * seen;

@@ -21,8 +21,16 @@ struct PathState {
     // both as they are, since shadow rays see through panes too. 0 = nothing else finds what this ray finds.
     V3d scattered_at{0, 0, 0};
     double pdf_sr = 0;
-    uint32_t panes = 0;    // passed since
-    bool diffuse = false;  // was scattered by a diffuse lobe
+    uint32_t panes = 0;      // passed since
+    bool diffuse = false;    // was scattered by a diffuse lobe
+    bool reflected = false;  // by some diffuse lobe on its way
+
+    uint32_t layer() const { return reflected ? LAYER_DIRECT : LAYER_EMISSION; }
+};
+
+// What light samples bring, by the lobe that reflects it.
+struct ReflectedLight {
+    RgbD diffuse{0, 0, 0}, glossy{0, 0, 0};
 };
 
 // Probabilities of the ways to go on.
@@ -54,10 +62,11 @@ class PathIntegrator : public Integrator {
 
   private:
     RgbD emission(const PathState& path, const Surface& surface) const;
-    RgbD light_from_samples(const PathState& path, const Surface& surface, const Bsdf& bsdf,
-                            const LobeChoice& choice, const PathSampler& sampler) const;
-    RgbD reflected_light(const Surface& surface, const Bsdf& bsdf, const LobeChoice& choice,
-                         const LightSample& sample) const;
+    ReflectedLight light_from_samples(const PathState& path, const Surface& surface, const Bsdf& bsdf,
+                                      const LobeChoice& choice, const PathSampler& sampler,
+                                      uint32_t& rays) const;
+    void add_reflected_light(const Surface& surface, const Bsdf& bsdf, const LobeChoice& choice,
+                             const LightSample& sample, ReflectedLight& light, uint32_t& rays) const;
     std::optional<PathState> continuation(const PathState& path, const Surface& surface, const Bsdf& bsdf,
                                           const LobeChoice& choice, const PathSampler& sampler) const;
 
@@ -68,25 +77,27 @@ class PathIntegrator : public Integrator {
 
 PathLight PathIntegrator::estimate(const Ray& camera_ray, const PathSampler& sampler) const {
     PathLight light;
-    RgbD& radiance = light.parts[LAYER_EMISSION];
     std::optional<PathState> path = PathState{camera_ray};
     while (path) {
+        ++light.rays;
         const Hit hit = world_.tracer.nearest(path->ray);
         if (!hit.found()) {
-            radiance += path->throughput * world_.background;
+            light.parts[path->layer()] += path->throughput * world_.background;
             break;
         }
         if (path->depth == 0) light.coverage = 1;
         const Surface surface = world_.surfaces.surface_at(hit, path->ray.direction);
         if (surface.material->unlit) {
             // A picture that is seen, but lights nothing.
-            if (!path->diffuse) radiance += path->throughput * surface.base;
+            if (!path->diffuse) light.parts[path->layer()] += path->throughput * surface.base;
             break;
         }
-        radiance += path->throughput * emission(*path, surface);
+        light.parts[path->layer()] += path->throughput * emission(*path, surface);
         const Bsdf bsdf(surface, path->ray.direction);
         const LobeChoice choice = choose_lobes(bsdf);
-        radiance += path->throughput * light_from_samples(*path, surface, bsdf, choice, sampler);
+        const auto [diffuse, glossy] = light_from_samples(*path, surface, bsdf, choice, sampler, light.rays);
+        light.parts[LAYER_DIRECT] += path->throughput * diffuse;
+        light.parts[path->layer()] += path->throughput * glossy;
         path = continuation(*path, surface, bsdf, choice, sampler);
     }
     return light;
@@ -100,41 +111,48 @@ RgbD PathIntegrator::emission(const PathState& path, const Surface& surface) con
     return surface.emitted() * power_heuristic(path.pdf_sr, light_samples_ * light_pdf);
 }
 
-RgbD PathIntegrator::light_from_samples(const PathState& path, const Surface& surface, const Bsdf& bsdf,
-                                        const LobeChoice& choice, const PathSampler& sampler) const {
+ReflectedLight PathIntegrator::light_from_samples(const PathState& path, const Surface& surface,
+                                                  const Bsdf& bsdf, const LobeChoice& choice,
+                                                  const PathSampler& sampler, uint32_t& rays) const {
     const SampleSet choices = sampler.light_points(path.depth, Dimension::select_light);
     const SampleSet points = sampler.light_points(path.depth, Dimension::area_light);
-    RgbD sum(0);
+    ReflectedLight sum;
     for (uint32_t l = 0; l < light_samples_; ++l) {
         const V2d which = choices.exact(l);
         const V3d& position = surface.position;
         if (world_.lights.has_area_lights()) {
-            sum += reflected_light(surface, bsdf, choice,
-                                   world_.lights.sample_area(position, points[l], which.x));
+            add_reflected_light(surface, bsdf, choice,
+                                world_.lights.sample_area(position, points[l], which.x), sum, rays);
         }
         if (world_.lights.has_punctual_lights()) {
-            sum += reflected_light(surface, bsdf, choice, world_.lights.sample_punctual(position, which.y));
+            add_reflected_light(surface, bsdf, choice, world_.lights.sample_punctual(position, which.y), sum,
+                                rays);
         }
     }
-    return sum / light_samples_;
+    return {sum.diffuse / light_samples_, sum.glossy / light_samples_};
 }
 
-RgbD PathIntegrator::reflected_light(const Surface& surface, const Bsdf& bsdf, const LobeChoice& choice,
-                                     const LightSample& sample) const {
+void PathIntegrator::add_reflected_light(const Surface& surface, const Bsdf& bsdf, const LobeChoice& choice,
+                                         const LightSample& sample, ReflectedLight& light,
+                                         uint32_t& rays) const {
     const double cosine = sample.direction.dot(bsdf.n_shade());
-    if (cosine <= 0 || sample.direction.dot(surface.n_geo) <= 0) return RgbD(0);
-    if (!(max_component(sample.radiance) > 0)) return RgbD(0);
+    if (cosine <= 0 || sample.direction.dot(surface.n_geo) <= 0) return;
+    if (!(max_component(sample.radiance) > 0)) return;
     const auto share = [&](double lobe_pdf_sr) {
         return sample.pdf_sr > 0 ? power_heuristic(light_samples_ * sample.pdf_sr, lobe_pdf_sr) : 1.0;
     };
-    RgbD brdf =
+    const RgbD diffuse =
         share(choice.diffuse * bsdf.diffuse_pdf_sr(sample.direction)) / std::numbers::pi * bsdf.diffuse();
+    RgbD glossy(0);
     if (bsdf.is_glossy()) {
         const LobeValue lobe = bsdf.glossy(sample.direction);
-        brdf += share(choice.specular * lobe.pdf_sr) * lobe.brdf;
+        glossy = share(choice.specular * lobe.pdf_sr) * lobe.brdf;
     }
-    if (!(max_component(brdf) > 0)) return RgbD(0);
-    return cosine * brdf * sample.radiance * world_.transmittance(surface, sample);
+    if (!(max_component(diffuse + glossy) > 0)) return;
+    ++rays;
+    const RgbD arriving = cosine * sample.radiance * world_.transmittance(surface, sample);
+    light.diffuse += diffuse * arriving;
+    light.glossy += glossy * arriving;
 }
 
 std::optional<PathState> PathIntegrator::continuation(const PathState& path, const Surface& surface,
@@ -154,6 +172,7 @@ std::optional<PathState> PathIntegrator::continuation(const PathState& path, con
         ++next.panes;
     } else {
         next.diffuse = u.x < choice.pass + choice.diffuse;
+        next.reflected = path.reflected || next.diffuse;
         probability = next.diffuse ? choice.diffuse : choice.specular;
         sample = next.diffuse       ? bsdf.sample_diffuse(direction_u)
                  : bsdf.is_glossy() ? bsdf.sample_glossy(direction_u)

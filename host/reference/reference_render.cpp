@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/memory.h"
+#include "base/stopwatch.h"
 #include "base/units.h"
 #include "reference/accumulator.h"
 #include "reference/camera_rays.h"
@@ -15,7 +16,6 @@
 #include <tbb/parallel_for.h>
 
 #include <atomic>
-#include <chrono>
 #include <mutex>
 
 namespace obscura::reference {
@@ -68,7 +68,6 @@ void check_memory(const PixelRect& rect) {
 }  // namespace
 
 ReferenceResult render_reference(const ReferenceJob& job, const ReferenceCallback& report) {
-    const auto start = std::chrono::steady_clock::now();
     const RenderSettings settings = with_default_sky(job.scene, job.settings);
     const ReferenceFacts facts = find_facts(job, settings);
     const Camera& camera = select_camera(job.scene, settings);
@@ -83,11 +82,10 @@ ReferenceResult render_reference(const ReferenceJob& job, const ReferenceCallbac
     if (job.previous != nullptr) {
         const uint64_t passes = passes_to_continue(*job.previous, job.previous_file, result.image);
         if (!accumulator.restore(*job.previous, passes))
-            throw InputError("--resume: {} holds no sums to go on with", job.previous_file);
+            throw InputError("{} holds no sums to go on with", job.previous_file);
         if (passes > planned) {
-            throw InputError(
-                "--resume: {} has {} samples per pixel already, more than the {} of --sets {} of --spp {}",
-                job.previous_file, passes, planned, job.sets, settings.spp);
+            throw InputError("{} has {} samples per pixel already, more than the {} of --sets {} of --spp {}",
+                             job.previous_file, passes, planned, job.sets, settings.spp);
         }
     }
 
@@ -103,13 +101,17 @@ ReferenceResult render_reference(const ReferenceJob& job, const ReferenceCallbac
         result.samples += samples;
         return report(static_cast<double>(samples_before + result.samples) / all, result.samples);
     };
+    const Stopwatch watch;
     while (result.complete && accumulator.passes() < planned) {
         const SamplePlan plan(settings, settings.seed + accumulator.finished_sets());
         const auto sample = static_cast<size_t>(accumulator.passes() % settings.spp);
         result.complete = renderer.render_pass(plan, order[sample], pixels, report_samples);
-        if (result.complete) accumulator.add_pass(pixels);
+        if (!result.complete) break;
+        accumulator.add_pass(pixels);
+        for (const PathLight& pixel : pixels)
+            result.rays += pixel.rays;
     }
-    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.seconds = watch.seconds();
     if (accumulator.passes() == 0) return result;
     accumulator.develop(result.image, job.integrator == IntegratorKind::obscurance);
     describe_progress(accumulator.passes(), accumulator.finished_sets(), result, job.previous);

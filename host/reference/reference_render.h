@@ -19,15 +19,16 @@ struct ReferenceJob {
     IntegratorKind integrator = IntegratorKind::obscurance;
     uint32_t sets = 1;
     const Image* previous = nullptr;      // a picture to go on with, or none
-    std::string_view previous_file = {};  // its name, for messages
+    std::string_view previous_file = {};  // for messages: option and name
 };
 
 struct ReferenceResult {
     Image
         image;  // its attributes are filled; without layers if it was stopped before every pixel had a sample
     uint64_t samples = 0;  // camera samples of this run
+    uint64_t rays = 0;     // of this run
     bool complete = true;  // false: stopped early
-    double seconds = 0;
+    double seconds = 0;    // of sampling, without what comes before it
 };
 
 // Called now and then, by one thread at a time; false stops the render there. What is not yet a sample of every pixel is

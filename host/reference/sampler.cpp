@@ -139,7 +139,9 @@ SampleSet PathSampler::light_points(uint32_t depth, Dimension dimension) const {
 SampleSet PathSampler::obscurance_directions(uint32_t depth) const {
     const uint32_t index =
         FIRST_PATH_DIMENSION + depth * DIMENSIONS_PER_DEPTH + static_cast<uint32_t>(Dimension::obscurance);
-    return make_set(index, plan_.obscurance_rays, plan_.obscurance, false);
+    SampleSet set = make_set(index, plan_.obscurance_rays, plan_.obscurance, true);
+    set.permuted_ = false;  // all of them are summed: only the samples' order matters
+    return set;
 }
 
 }  // namespace obscura::reference

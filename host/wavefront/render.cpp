@@ -86,8 +86,9 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     check_picture_memory(rect, job.layers, plane_count(planes));
 
     // The builder works on one core, everything up to the upload on another.
-    std::future<Bvh> building =
-        std::async(std::launch::async, [&] { return build_bvh(job.scene, job.bvh_quality); });
+    std::future<Bvh> building;
+    if (job.bvh == nullptr)
+        building = std::async(std::launch::async, [&] { return build_bvh(job.scene, job.bvh_quality); });
     result.d_max = resolve_max_distance(settings.d_max, job.scene);
     result.radiometry = compute_radiometry(job.scene);
     check_ambient(job.scene, result.radiometry, settings);
@@ -95,7 +96,8 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     const StageKernels kernels = prepare_kernels(library, result.needs, job);
     result.seconds.compile = compile_watch.seconds();
     const SceneArrays arrays = make_scene_arrays(job.scene, settings.filter);
-    const Bvh bvh = building.get();
+    const Bvh built = job.bvh == nullptr ? building.get() : Bvh();
+    const Bvh& bvh = job.bvh == nullptr ? built : *job.bvh;
     result.seconds.build = bvh.build_seconds;
 
     const Stopwatch upload_watch;

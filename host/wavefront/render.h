@@ -31,6 +31,7 @@ struct RenderJob {
     bool portable = false;  // kernels without instructions of one processor
     BvhQuality bvh_quality = BvhQuality::high;
     DepthObserver observer = {};  // optional
+    const Bvh* bvh = nullptr;     // of the scene, built already; built here if null
 };
 
 // Wall times, seconds. The BVH is built while the kernels are compiled.

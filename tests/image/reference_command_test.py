@@ -112,10 +112,12 @@ class ReferenceCommand(unittest.TestCase):
     def test_layers_partition_the_picture_and_tell_its_variance(self):
         parts = {"emission", "direct", "ambient", "specular.emission", "specular.direct", "specular.ambient"}
         state = {"state.high", "state.low"}
-        self.assertEqual(parts | state | {"beauty", "Variance"}, self.layers("base"))
-        self.assertEqual(state | {"beauty", "Variance"}, self.layers("path"))
+        always = state | {"beauty", "diffuse"}
+        variances = {"Variance", "Variance.diffuse"}
+        self.assertEqual(always | parts | variances | {"obscurance", "Variance.obscurance"}, self.layers("base"))
+        self.assertEqual(always | variances, self.layers("path"))
         result = self.reference("single", "--sets", "1")
-        self.assertNotIn("Variance", self.layers("single"))
+        self.assertEqual(always | parts | {"obscurance"}, self.layers("single"))
         self.assertIn("there is no layer Variance", result.stderr)
 
     def test_threads_change_nothing(self):

@@ -20,6 +20,7 @@ std::vector<PathLight> random_pass(std::mt19937& random) {
     std::uniform_real_distribution<double> unit(0, 1);
     for (PathLight& pixel : pixels) {
         pixel.coverage = unit(random) < 0.5 ? 0 : 1;
+        pixel.obscurance = RgbD(unit(random), unit(random), unit(random));
         for (RgbD& part : pixel.parts)
             part = std::exp2(40 * unit(random) - 30) * RgbD(unit(random), unit(random), unit(random));
     }
@@ -46,10 +47,10 @@ TEST(Accumulator, MeanAndVarianceAreThoseOfTheSets) {
     std::mt19937 random(1);
     Accumulator accumulator(PIXELS, PASSES_PER_SET);
     constexpr int SETS = 5;
-    std::vector<double> set_means;  // red of the first pixel
+    std::vector<double> set_means, obscurance_means;  // red of the first pixel
     double emission = 0, coverage = 0;
     for (int set = 0; set < SETS; ++set) {
-        double sum = 0;
+        double sum = 0, obscurance = 0;
         for (uint32_t pass = 0; pass < PASSES_PER_SET; ++pass) {
             const std::vector<PathLight> pixels = random_pass(random);
             accumulator.add_pass(pixels);
@@ -57,20 +58,32 @@ TEST(Accumulator, MeanAndVarianceAreThoseOfTheSets) {
                 sum += part.x;
             emission += pixels[0].parts[LAYER_EMISSION].x;
             coverage += pixels[0].coverage;
+            obscurance += pixels[0].obscurance.x;
         }
         set_means.push_back(sum / PASSES_PER_SET);
+        obscurance_means.push_back(obscurance / PASSES_PER_SET);
     }
-    double mean = 0, variance = 0;
-    for (const double value : set_means)
-        mean += value / SETS;
-    for (const double value : set_means)
-        variance += (value - mean) * (value - mean) / (SETS - 1) / SETS;
+    const auto mean = [](const std::vector<double>& values) {
+        double total = 0;
+        for (const double value : values)
+            total += value;
+        return total / SETS;
+    };
+    const auto variance = [&](const std::vector<double>& values) {
+        double deviations = 0;
+        for (const double value : values)
+            deviations += (value - mean(values)) * (value - mean(values));
+        return deviations / (SETS - 1) / SETS;
+    };
     const Image image = developed(accumulator);
     EXPECT_EQ(accumulator.finished_sets(), 5u);
-    EXPECT_FLOAT_EQ(image.find_layer("")->pixels[0], static_cast<float>(mean));
+    EXPECT_FLOAT_EQ(image.find_layer("")->pixels[0], static_cast<float>(mean(set_means)));
     EXPECT_FLOAT_EQ(image.find_layer("")->pixels[3], static_cast<float>(coverage / 20));
     EXPECT_FLOAT_EQ(image.find_layer("emission")->pixels[0], static_cast<float>(emission / 20));
-    EXPECT_FLOAT_EQ(image.find_layer("Variance")->pixels[0], static_cast<float>(variance));
+    EXPECT_FLOAT_EQ(image.find_layer("obscurance")->pixels[0], static_cast<float>(mean(obscurance_means)));
+    EXPECT_FLOAT_EQ(image.find_layer(VARIANCE_LAYER)->pixels[0], static_cast<float>(variance(set_means)));
+    EXPECT_FLOAT_EQ(image.find_layer(OBSCURANCE_VARIANCE_LAYER)->pixels[0],
+                    static_cast<float>(variance(obscurance_means)));
 }
 
 TEST(Accumulator, VarianceTakesTwoFinishedSets) {

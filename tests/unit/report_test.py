@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-# tools/report oracles writes every row that the device test measured, and refuses a table with a gap or an error.
+# tools/report oracles writes every row that the device test measured, and refuses a table with a gap or an error;
+# tools/report sweep makes a page of plots, pictures and tables that needs nothing else.
 import csv
 import json
 import pathlib
@@ -75,6 +76,79 @@ class Oracles(unittest.TestCase):
         code, said, _ = self.report(None)
         self.assertEqual(1, code)
         self.assertIn("tools/test -R Oracle.Owen writes it", said)
+
+
+def errors(rmse):
+    """The figures of a layer, all of them telling nothing but their RMSE."""
+    names = ["relmse", "mape", "bias", "rms_bias", "variance"]
+    spread = {f"{name}{end}": 0.01 for name in names for end in ("", "_low", "_high")}
+    return {**spread, "rmse": rmse, "rmse_low": 0.9 * rmse, "rmse_high": 1.1 * rmse, "bias_standard_error": 0.01,
+            "efficiency": None, "reference_share": 0.02}
+
+
+def sweep_results():
+    """Two budgets of a sampler, a model and path tracing."""
+    def rows(seconds, sampling):
+        layers = {"diffuse": errors(0.02), **({"obscurance": errors(0.03)} if sampling else {})}
+        return [{"budget": budget, "samples_per_pixel": budget // 5, "runs": 10, "seconds": seconds * budget,
+                 "seconds_min": seconds * budget, "seconds_max": seconds * budget, "rays": 1000.0 * budget,
+                 **errors(0.5 / budget), "layers": layers} for budget in (5, 10)]
+
+    fit = {"exponent": -0.77, "low": -0.8, "high": -0.7}
+    floor = {"floor": 0.0123, "floor_low": 0.01, "floor_high": 0.02, "path_better_after_seconds": 4.56,
+             "path_better_after_rays": None}
+    names = {"lattice": "obscurance", "needs-all": "obscurance", "ao": "path", "path": "path"}
+    return {"scene": "a <scene>.gltf", "device": "a device", "width": 8, "height": 6, "seeds": 10, "complete": True,
+            "references": {"path": {"samples_per_pixel": 64, "independent_sets": 16, "seconds": 9.0, "tracer": "a tracer",
+                                    "standard_error": {"beauty": 0.001}}},
+            "methods": {name: rows(2.0 if name == "needs-all" else 1.0, kind == "obscurance") for name, kind in names.items()},
+            "meaning": dict.fromkeys(names, "what it is"), "measured_against": names,
+            "convergence": {name: {"diffuse": {"rays": fit, "seconds": None}} for name in names},
+            "overtaking": {"ao": floor},
+            "variance_ratio_to_random": {"lattice": [{"budget": 5, "layer": "obscurance", "ratio": 7.89}]}}
+
+
+class SweepPage(unittest.TestCase):
+    def report(self, document, *options):
+        """Exit code, what was said, and the page if there is one."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "pictures").mkdir()
+            black_png = bytes.fromhex("89504e470d0a1a0a0000000d4948445200000001000000010802000000907753de0000000c49444154789c63"
+                                      "6060600000000400017689b2a60000000049454e44ae426082")
+            (folder / "pictures/reference-path.png").write_bytes(black_png)
+            if document is not None:
+                (folder / "sweep.json").write_text(json.dumps(document))
+                (folder / "sweep.csv").write_text("method")
+            done = subprocess.run([ROOT / "tools/report", "sweep", folder, "--out", folder / "out", *options],
+                                  capture_output=True, text=True, check=False)
+            written = {path.name: path.read_bytes() for path in (folder / "out").glob("*")}
+            return done.returncode, done.stderr, written
+
+    def test_page_holds_plots_pictures_and_figures(self):
+        code, said, written = self.report(sweep_results())
+        self.assertEqual((0, ""), (code, said))
+        self.assertEqual({"sweep.html", "sweep.png", "sweep.json", "sweep.csv"}, set(written))
+        page = written["sweep.html"].decode()
+        self.assertEqual(4, page.count("<svg"))
+        for text in ("a &lt;scene&gt;.gltf", "lattice, slope -0.77", "0.0123 (0.01 to 0.02)", "4.56 s", "7.89", "a device",
+                     "64 spp in 16 sets", "data:image/png;base64,", "reference: path", "<td>2.00</td>"):
+            self.assertIn(text, page)
+        self.assertNotIn("src=\"http", page)
+        self.assertNotIn("href=\"http", page)
+        self.assertTrue(written["sweep.png"].startswith(b"\x89PNG"))
+
+    def test_unfinished_sweep_says_so(self):
+        page = self.report({**sweep_results(), "complete": False})[2]["sweep.html"].decode()
+        self.assertIn("stopped early", page)
+
+    def test_missing_sweep_and_wrong_window_are_refused(self):
+        code, said, _ = self.report(None)
+        self.assertEqual(1, code)
+        self.assertIn("obscura sweep SCENE -o", said)
+        code, said, _ = self.report(sweep_results(), "--crop", "0.5,0.4,0,1")
+        self.assertEqual(2, code)
+        self.assertIn("x0,x1,y0,y1", said)
 
 
 if __name__ == "__main__":
