@@ -3,6 +3,7 @@
 #include "base/progress.h"
 
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <pty.h>
 #include <unistd.h>
 
@@ -37,10 +38,18 @@ class FakeTerminal {
     FakeTerminal(const FakeTerminal&) = delete;
     FakeTerminal& operator=(const FakeTerminal&) = delete;
 
+    // What has been printed; the terminal hands it over in parts, and not at once.
     std::string read() const {
+        constexpr int QUIET_MS = 200;
+        std::string printed;
         std::array<char, 4096> buffer{};
-        const ssize_t count = ::read(master_, buffer.data(), buffer.size());
-        return std::string(buffer.data(), count > 0 ? static_cast<size_t>(count) : 0);
+        pollfd terminal{master_, POLLIN, 0};
+        while (::poll(&terminal, 1, QUIET_MS) > 0) {
+            const ssize_t count = ::read(master_, buffer.data(), buffer.size());
+            if (count <= 0) break;
+            printed.append(buffer.data(), static_cast<size_t>(count));
+        }
+        return printed;
     }
 
   private:
