@@ -34,6 +34,7 @@ struct OutputOptions {
     std::string output;
     std::string preview;
     std::string stats;
+    std::string trace;
     std::vector<std::string> layers{"emission",        "direct",           "ambient",   "specular.emission",
                                     "specular.direct", "specular.ambient", "obscurance"};
     double exposure_stops = 0;
@@ -88,46 +89,64 @@ void print_summary(const RenderResult& result, const RunSeconds& seconds) {
              bytes_text(result.bytes.at("peak_device")));
 }
 
+void write_trace(const std::string& path, const Device& device) {
+    if (path.empty()) return;
+    device.commands()->flush();
+    device.trace()->write(path);
+    log_info("wrote {}", path);
+}
+
 // seconds: write and total are filled.
-void write_outputs(const OutputOptions& out, const Scene& scene, const DeviceInfo& device,
+void write_outputs(const OutputOptions& out, const Scene& scene, const Device& device,
                    const RenderResult& result, RunSeconds& seconds,
                    std::chrono::steady_clock::time_point start) {
     const auto write_start = std::chrono::steady_clock::now();
     write_all({[&] {
+                   const TraceStep step(device.trace(), TraceCategory::host, "write picture");
                    save_picture(result.image, out.output, out.half_color);
                    log_info("wrote {}", out.output);
                },
                [&] {
                    if (out.preview.empty()) return;
+                   const TraceStep step(device.trace(), TraceCategory::host, "write preview");
                    write_preview_png(result.image, out.preview, out.exposure_stops);
                    log_info("wrote {}", out.preview);
                },
                [&] {
                    seconds.write = seconds_since(write_start);
                    seconds.total = seconds_since(start);
-                   if (!out.stats.empty()) write_stats(out.stats, scene, device, result, seconds);
-               }});
+                   if (!out.stats.empty()) write_stats(out.stats, scene, device.info(), result, seconds);
+               },
+               [&] { write_trace(out.trace, device); }});
 }
 
 ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
     set_quiet(options.quiet);
+    TraceRecord trace;
     const auto start = std::chrono::steady_clock::now();
     const std::filesystem::path scene_file = find_scene_file(options.scene);
-    check_outputs(
-        {{"--output", out.output, ".exr"}, {"--preview", out.preview, ".png"}, {"--stats", out.stats}},
-        {scene_file.string()});
+    check_outputs({{"--output", out.output, ".exr"},
+                   {"--preview", out.preview, ".png"},
+                   {"--stats", out.stats},
+                   {"--trace", out.trace}},
+                  {scene_file.string()});
+    if (out.trace == "-") throw InputError("--trace -: traces are written to files only");
     const RenderSettings settings = settings_of(options);
     const std::vector<std::string> layers = resolve_layers(out.layers);
     const uint64_t queue_bytes = parse_bytes(options.memory);
     // The driver starts while the scene is read.
-    std::future<std::unique_ptr<Device>> opening = std::async(
-        std::launch::async, [&] { return std::unique_ptr<Device>(new Device(open_device(options.device))); });
+    std::future<std::unique_ptr<Device>> opening = std::async(std::launch::async, [&] {
+        const TraceStep step(&trace, TraceCategory::host, "open device");
+        return std::unique_ptr<Device>(new Device(open_device(options.device)));
+    });
     const Scene scene = load_gltf(scene_file);
     RunSeconds seconds;
     seconds.load = seconds_since(start);
+    trace.add_step(TraceCategory::host, "load", 0, trace.now_ns(), {});
 
     const std::unique_ptr<Device> opened = opening.get();
     Device& device = *opened;
+    if (!out.trace.empty()) device.log_commands(trace);
     ProgramLibrary library(device, options.local_size);
     catch_interrupts();
     log_info("{}: {}, {}; device {}", scene.name, counted(scene.triangles.size(), "triangle"),
@@ -146,12 +165,14 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
     progress.reset();
 
     if (result.rays.camera == 0) {
-        log_warning("stopped before the first sample: nothing is written");
+        ignore_interrupts();
+        write_trace(out.trace, device);
+        log_warning("stopped before the first sample: no picture is written");
         return ExitCode::interrupted;
     }
     ignore_interrupts();
     if (out.names == ExrNames::blender) use_blender_names(result.image);
-    write_outputs(out, scene, device.info(), result, seconds, start);
+    write_outputs(out, scene, device, result, seconds, start);
     print_summary(result, seconds);
     if (result.complete) return ExitCode::ok;
     log_warning("stopped early: the picture is saved with the samples it has");
@@ -193,6 +214,12 @@ void add_render_command(CLI::App& app, ExitCode& exit_code) {
         ->group(group);
     command->add_option("--stats", out->stats, "Write the run's figures as JSON; - is standard output")
         ->type_name("FILE.json|-")
+        ->group(group);
+    command
+        ->add_option("--trace", out->trace,
+                     "Write what the host and the device did when, for ui.perfetto.dev or chrome://tracing")
+        ->type_name("FILE.json")
+        ->check(not_empty())
         ->group(group);
     command->callback([options, out, &exit_code] { exit_code = run_render(*options, *out); });
 }

@@ -3,6 +3,7 @@
 #include "device/launch.h"
 
 #include <algorithm>
+#include <string>
 
 #include "base/error.h"
 #include "base/units.h"
@@ -43,7 +44,10 @@ cl::Event launch(const Launch& run, std::span<const LaunchArgument> arguments) {
     check(clEnqueueNDRangeKernel(run.device.queue()(), run.kernel(), 1, nullptr, &global, &local, 0, nullptr,
                                  &event),
           "clEnqueueNDRangeKernel", run.stage, run.device.name(), run.item_count);
-    return cl::Event(event);  // takes over the reference that the call gave
+    const cl::Event launched(event);  // takes over the reference that the call gave
+    if (CommandLog* const commands = run.device.commands())
+        commands->add(TraceCategory::kernel, std::string(run.stage), {"items", run.item_count}, launched);
+    return launched;
 }
 
 }  // namespace obscura

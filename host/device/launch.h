@@ -54,7 +54,7 @@ class LaunchArgument {
 struct Launch {
     const Device& device;
     const cl::Kernel& kernel;
-    std::string_view stage;  // for error messages
+    std::string_view stage;  // for error messages and traces
     uint64_t item_count;
     uint32_t local_size;
 };

@@ -88,7 +88,10 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     // The builder works on one core, everything up to the upload on another.
     std::future<Bvh> building;
     if (job.bvh == nullptr)
-        building = std::async(std::launch::async, [&] { return build_bvh(job.scene, job.bvh_quality); });
+        building = std::async(std::launch::async, [&] {
+            const TraceStep step(device.trace(), TraceCategory::host, "build BVH");
+            return build_bvh(job.scene, job.bvh_quality);
+        });
     result.d_max = resolve_max_distance(settings.d_max, job.scene);
     result.radiometry = compute_radiometry(job.scene);
     check_ambient(job.scene, result.radiometry, settings);
@@ -146,6 +149,7 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
         result.samples_per_pixel = std::min(result.samples_per_pixel, static_cast<uint32_t>(passes));
         std::vector<FilmSum> sums(band.pixel_count() * shape.layer_planes);
         if (done > 0) queues.film.download(sums);
+        const TraceStep step(device.trace(), TraceCategory::host, "develop");
         develop_band({planes, sums, pixel_order, passes, done % band.pixel_count()}, job.layers,
                      result.image);
         samples_before += band_samples;

@@ -81,7 +81,7 @@ KEEPS_PICTURE = {
 # Each has its own test below.
 OTHERS = {
     "--width", "--height", "--cropwindow", "--layers", "--preview", "--exposure", "--stats", "--quiet", "--device",
-    "--output --outfile", "--exr-names",
+    "--output --outfile", "--exr-names", "--trace",
 }
 
 
@@ -309,6 +309,12 @@ class Options(unittest.TestCase):
     def test_quiet_prints_nothing(self):
         self.assertNotEqual("", self.render("loud", []).stderr)
         self.assertEqual("", self.render("quiet", ["--quiet"]).stderr)
+
+    def test_trace_is_written_and_keeps_the_picture(self):  # what is in it: trace_file_test.py
+        self.render("traced", ["--trace", self.folder / "trace.json"])
+        self.assertFalse(self.differs("traced"))
+        names = {event["name"] for event in json.loads((self.folder / "trace.json").read_text())["traceEvents"]}
+        self.assertLess(set(self.stats("traced")["kernels"]), names)
 
     def test_unknown_device_is_refused(self):
         result = obscura("render", self.scene, "-o", self.folder / "x.exr", "--device", "no such device")
