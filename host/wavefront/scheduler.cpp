@@ -48,7 +48,9 @@ void Scheduler::run_stages(StageTime time, const Work& work) {
     for (const StageInfo& info : STAGES) {
         if (info.time != time || !launches(info)) continue;
         const cl::Event event = launch_stage(info, work);
-        profiler_.record(std::string(info.row(work.depth)), info.items(work, queues_.shape), event);
+        const uint64_t items = info.items(work, queues_.shape);
+        profiler_.record(std::string(info.row(work.depth)), items, grid_size(device_, items, local_size_),
+                         event);
     }
 }
 
