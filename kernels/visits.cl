@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a ray costs: the production traversal, built so that it counts its visits. For `obscura bench`, which never times
-// this kernel.
+// What a ray costs: the production traversal, built so that it counts its visits. For `obscura bench` and `obscura render
+// --profile`, which never time these kernels. Behind panes nothing is counted.
 #define COUNT_VISITS
+#include "lib/layers.clh"
+#include "lib/obscurance_ray.clh"
 #include "lib/stream.clh"
 
 // rays: origin with t_max, direction. any_hit: 1 = whether anything is hit, 0 = the nearest hit. Of each ray
@@ -23,4 +25,91 @@ kernel void visits(global const BvhNode* nodes, global const TriangleBlock* bloc
                    global uint4* counts, uint count, uint any_hit) {
     const Share share = share_of(count, STREAM_RAYS);
     if (share.first < share.last) visit_share(nodes, blocks, rays, counts, any_hit, share);
+}
+
+// The rays that a render has in its queues, once more. Of each ray
+//   counts  nodes, blocks, the most entries on its stack, its pixel's index in the crop
+
+inline uint4 visits_of(Hit hit, global const Frame* frame, global const float4* paths, uint slot) {
+    const uint pixel = as_uint(paths[path_index(frame, PATH_SAMPLE, slot)].z);
+    return (uint4)(hit.nodes, hit.blocks, hit.entries, pixel);
+}
+
+SHARE_FUNCTION trace_share(global const Frame* frame, global const BvhNode* nodes,
+                           global const TriangleBlock* blocks, global const float4* rays,
+                           global const float4* paths, global uint4* counts, Share share) {
+    const uint capacity = frame->crop.w;
+    RayStream stream;
+    for (uint first = share.first; first < share.last; first += stream.count) {
+        stream.count = 0u;
+        for (uint i = first; i < min(first + STREAM_RAYS, share.last); ++i)
+            add_ray(&stream, rays[RAY_ORIGIN * capacity + i].xyz, rays[RAY_DIRECTION * capacity + i].xyz,
+                    INFINITY);
+        trace_stream(nodes, blocks, &stream, false);
+        for (uint ray = 0u; ray < stream.count; ++ray) {
+            const uint slot = as_uint(rays[RAY_ORIGIN * capacity + first + ray].w);
+            counts[first + ray] = visits_of(stream_hit(&stream, ray), frame, paths, slot);
+        }
+    }
+}
+
+kernel void trace_visits(global const Frame* frame, global const BvhNode* nodes,
+                         global const TriangleBlock* blocks, global const float4* rays,
+                         global const float4* paths, global uint4* counts, uint count) {
+    const Share share = share_of(count, STREAM_RAYS);
+    if (share.first < share.last) trace_share(frame, nodes, blocks, rays, paths, counts, share);
+}
+
+SHARE_FUNCTION shadow_share(global const Frame* frame, global const BvhNode* nodes,
+                            global const TriangleBlock* blocks, global const float4* shadow_rays,
+                            global const float4* paths, global uint4* counts, Share share) {
+    const uint capacity = frame->crop.w * light_sample_count(frame);
+    RayStream stream;
+    for (uint first = share.first; first < share.last; first += stream.count) {
+        stream.count = 0u;
+        for (uint i = first; i < min(first + STREAM_RAYS, share.last); ++i) {
+            const float4 direction = shadow_rays[SHADOW_DIRECTION * capacity + i];
+            add_ray(&stream, shadow_rays[SHADOW_ORIGIN * capacity + i].xyz, direction.xyz, direction.w);
+        }
+        trace_stream(nodes, blocks, &stream, true);
+        for (uint ray = 0u; ray < stream.count; ++ray) {
+            const uint result = as_uint(shadow_rays[SHADOW_ORIGIN * capacity + first + ray].w);
+            counts[first + ray] = visits_of(stream_hit(&stream, ray), frame, paths, result % frame->crop.w);
+        }
+    }
+}
+
+kernel void shadow_visits(global const Frame* frame, global const BvhNode* nodes,
+                          global const TriangleBlock* blocks, global const float4* shadow_rays,
+                          global const float4* paths, global uint4* counts, uint count) {
+    const Share share = share_of(count, STREAM_RAYS);
+    if (share.first < share.last) shadow_share(frame, nodes, blocks, shadow_rays, paths, counts, share);
+}
+
+// Ray k of point i is item K i + k.
+SHARE_FUNCTION obscurance_share(global const Frame* frame, global const BvhNode* nodes,
+                                global const TriangleBlock* blocks, global const float4* points,
+                                global const float4* paths, global uint* counters, global uint4* counts,
+                                uint depth, Share share) {
+    const uint k_count = frame->sampling.y;
+    RayStream stream;
+    RayOwners owners;
+    for (uint next = 0u; next < direction_batches(frame, share);) {
+        next = gather_obscurance_rays(frame, points, paths, counters, share, next, depth, &stream, &owners);
+        trace_stream(nodes, blocks, &stream, !NEED_NEAREST_OCCLUDER);
+        for (uint ray = 0u; ray < stream.count; ++ray) {
+            const uint slot = owners.result[ray] / k_count;
+            const uint item = owners.point[ray] * k_count + owners.result[ray] % k_count;
+            counts[item] = visits_of(stream_hit(&stream, ray), frame, paths, slot);
+        }
+    }
+}
+
+kernel void obscurance_visits(global const Frame* frame, global const BvhNode* nodes,
+                              global const TriangleBlock* blocks, global const float4* points,
+                              global const float4* paths, global uint* counters, global uint4* counts,
+                              uint count, uint depth) {
+    const Share share = share_of(count, 256u);
+    if (share.first < share.last)
+        obscurance_share(frame, nodes, blocks, points, paths, counters, counts, depth, share);
 }

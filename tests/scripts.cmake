@@ -38,6 +38,7 @@ if(TARGET obscura)
   obscura_script_test(image readme_examples_test)
   obscura_script_test(image reference_command_test)
   obscura_script_test(image sweep_command_test)
+  obscura_script_test(image trace_file_test)
   # R_ave and I_A of every scene against a computation that shares no code with the program.
   foreach(scene cornell furnace kitchen planes sphere wall)
     add_test(NAME radiometry_of_${scene} COMMAND ${OBSCURA_PYTHON} -B ${PROJECT_SOURCE_DIR}/tools/check_radiometry.py

@@ -32,9 +32,10 @@ Json kernel_rows(const RenderResult& result) {
 }  // namespace
 
 void write_stats(const std::string& path, const Scene& scene, const DeviceInfo& device,
-                 const RenderResult& result, const RunSeconds& seconds) {
+                 const RenderResult& result, const RunSeconds& seconds,
+                 const std::optional<RenderProfile>& profile) {
     const RenderSettings& settings = result.settings;
-    const Json stats{
+    Json stats{
         {"version", OBSCURA_VERSION},
         {"scene", scene.name},
         {"device", device.name},
@@ -71,6 +72,7 @@ void write_stats(const std::string& path, const Scene& scene, const DeviceInfo& 
         {"bytes", result.bytes},
         {"needs", needed_names(scene, settings)},
     };
+    if (profile) stats["profile"] = profile_json(*profile);
     write_json(path, stats);
 }
 

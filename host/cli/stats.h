@@ -2,8 +2,10 @@
 // The figures of a run as JSON, for --stats.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "cli/profile_report.h"
 #include "device/selector.h"
 #include "scene/scene.h"
 #include "wavefront/render.h"
@@ -20,6 +22,7 @@ struct RunSeconds {
 
 // path: a file, or "-" for standard output. Throws InputError.
 void write_stats(const std::string& path, const Scene& scene, const DeviceInfo& device,
-                 const RenderResult& result, const RunSeconds& seconds);
+                 const RenderResult& result, const RunSeconds& seconds,
+                 const std::optional<RenderProfile>& profile);
 
 }  // namespace obscura

@@ -77,28 +77,47 @@ void Buffer::check_range(uint64_t offset, uint64_t size) const {
                   name_, bytes_, offset, size);
 }
 
+cl::Event* Buffer::event_if_logged(cl::Event& event) const {
+    return device_->commands() != nullptr ? &event : nullptr;
+}
+
+void Buffer::log(const char* what, uint64_t bytes, const cl::Event& event) const {
+    CommandLog* const commands = device_->commands();
+    if (commands == nullptr) return;
+    commands->add(TraceCategory::transfer, fmt::format("{} {}", what, name_), {"bytes", bytes}, event);
+}
+
 void Buffer::write(std::span<const std::byte> source, uint64_t offset, Transfer transfer) {
     check_range(offset, source.size());
     if (source.empty()) return;
     const cl_bool blocking = transfer == Transfer::blocking ? CL_TRUE : CL_FALSE;
-    check(device_->queue().enqueueWriteBuffer(handle_, blocking, offset, source.size(), source.data()),
+    cl::Event event;
+    check(device_->queue().enqueueWriteBuffer(handle_, blocking, offset, source.size(), source.data(),
+                                              nullptr, event_if_logged(event)),
           "clEnqueueWriteBuffer", fmt::format("uploading \"{}\"", name_), device_->name());
+    log("upload", source.size(), event);
 }
 
 void Buffer::read(std::span<std::byte> target, uint64_t offset, Transfer transfer) const {
     check_range(offset, target.size());
     if (target.empty()) return;
     const cl_bool blocking = transfer == Transfer::blocking ? CL_TRUE : CL_FALSE;
-    check(device_->queue().enqueueReadBuffer(handle_, blocking, offset, target.size(), target.data()),
+    cl::Event event;
+    check(device_->queue().enqueueReadBuffer(handle_, blocking, offset, target.size(), target.data(), nullptr,
+                                             event_if_logged(event)),
           "clEnqueueReadBuffer", fmt::format("downloading \"{}\"", name_), device_->name());
+    log("download", target.size(), event);
 }
 
 void Buffer::clear() {
     check_range(0, 0);
     if (bytes_ == 0) return;
     // The pattern is one byte, so that any size is a whole number of patterns.
-    check(device_->queue().enqueueFillBuffer(handle_, cl_uchar{0}, 0, bytes_), "clEnqueueFillBuffer",
-          fmt::format("clearing \"{}\"", name_), device_->name());
+    cl::Event event;
+    check(
+        device_->queue().enqueueFillBuffer(handle_, cl_uchar{0}, 0, bytes_, nullptr, event_if_logged(event)),
+        "clEnqueueFillBuffer", fmt::format("clearing \"{}\"", name_), device_->name());
+    log("clear", bytes_, event);
 }
 
 }  // namespace obscura

@@ -72,6 +72,9 @@ class Buffer {
     void write(std::span<const std::byte> source, uint64_t offset, Transfer transfer);
     void read(std::span<std::byte> target, uint64_t offset, Transfer transfer) const;
     void check_range(uint64_t offset, uint64_t size) const;
+    // Enters a transfer of so many bytes into the device's log; what: "upload".
+    void log(const char* what, uint64_t bytes, const cl::Event& event) const;
+    cl::Event* event_if_logged(cl::Event& event) const;
     void release() noexcept;
 
     Device* device_ = nullptr;

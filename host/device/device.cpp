@@ -58,6 +58,10 @@ Device::Device(cl::Device handle, DeviceInfo info) : handle_(std::move(handle)),
     runs_items_in_turn_ = info_.is_cpu && (compiles_at_launch_ || info_.platform == "Oclgrind");
 }
 
+void Device::log_commands(TraceRecord& trace) {
+    commands_ = std::make_unique<CommandLog>(trace, context_, queue_, info_.name);
+}
+
 void Device::finish(std::string_view stage) const {
     check(queue_.finish(), "clFinish", stage, info_.name);
 }

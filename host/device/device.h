@@ -3,8 +3,10 @@
 // and the ledger of its memory. Buffers and programs refer to it, so it outlives them.
 #pragma once
 
+#include <memory>
 #include <string_view>
 
+#include "device/command_log.h"
 #include "device/memory_ledger.h"
 #include "device/opencl.h"
 #include "device/selector.h"
@@ -38,6 +40,11 @@ class Device {
     MemoryLedger& memory() { return memory_; }
     const MemoryLedger& memory() const { return memory_; }
 
+    // From now on commands are logged in the trace, which must live as long as the device.
+    void log_commands(TraceRecord& trace);
+    CommandLog* commands() const { return commands_.get(); }  // null: nothing is traced
+    TraceRecord* trace() const { return commands_ ? &commands_->trace() : nullptr; }
+
     // Waits until everything enqueued is done. stage names the work in an error message.
     void finish(std::string_view stage) const;
 
@@ -51,6 +58,7 @@ class Device {
     bool compiles_at_launch_ = false;
     bool runs_items_in_turn_ = false;
     MemoryLedger memory_;
+    std::unique_ptr<CommandLog> commands_;
 };
 
 // Opens the device that the selector means (select_device); an empty selector means the environment variable

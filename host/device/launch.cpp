@@ -3,6 +3,7 @@
 #include "device/launch.h"
 
 #include <algorithm>
+#include <string>
 
 #include "base/error.h"
 #include "base/units.h"
@@ -31,19 +32,25 @@ void set_arguments(const Launch& run, std::span<const LaunchArgument> arguments)
 
 }  // namespace
 
+uint64_t grid_size(const Device& device, uint64_t item_count, uint32_t local_size) {
+    const uint64_t wanted = std::max(item_count, device.smallest_grid());
+    return (wanted + local_size - 1) / local_size * local_size;
+}
+
 cl::Event launch(const Launch& run, std::span<const LaunchArgument> arguments) {
     set_arguments(run, arguments);
     OBSCURA_CHECK(run.item_count > 0 && run.local_size > 0, "stage {}: {} items in groups of {}", run.stage,
                   run.item_count, run.local_size);
-    const uint64_t wanted = std::max(run.item_count, run.device.smallest_grid());
-    const uint64_t group_count = (wanted + run.local_size - 1) / run.local_size;
-    const size_t global = group_count * run.local_size;
+    const size_t global = grid_size(run.device, run.item_count, run.local_size);
     const size_t local = run.local_size;
     cl_event event = nullptr;
     check(clEnqueueNDRangeKernel(run.device.queue()(), run.kernel(), 1, nullptr, &global, &local, 0, nullptr,
                                  &event),
           "clEnqueueNDRangeKernel", run.stage, run.device.name(), run.item_count);
-    return cl::Event(event);  // takes over the reference that the call gave
+    const cl::Event launched(event);  // takes over the reference that the call gave
+    if (CommandLog* const commands = run.device.commands())
+        commands->add(TraceCategory::kernel, std::string(run.stage), {"items", run.item_count}, launched);
+    return launched;
 }
 
 }  // namespace obscura

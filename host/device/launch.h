@@ -54,10 +54,13 @@ class LaunchArgument {
 struct Launch {
     const Device& device;
     const cl::Kernel& kernel;
-    std::string_view stage;  // for error messages
+    std::string_view stage;  // for error messages and traces
     uint64_t item_count;
     uint32_t local_size;
 };
+
+// Work items of a launch: its items, and those that fill up the last group and the smallest grid.
+uint64_t grid_size(const Device& device, uint64_t item_count, uint32_t local_size);
 
 // Returns at once; the event carries the kernel's times.
 cl::Event launch(const Launch& run, std::span<const LaunchArgument> arguments);

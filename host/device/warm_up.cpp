@@ -4,6 +4,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "device/buffer.h"
@@ -43,7 +44,7 @@ void warm_up(Device& device, const cl::Kernel& kernel, std::string_view stage, u
         else
             arguments.emplace_back(memory);
     }
-    launch({device, kernel, stage, 1, local_size}, arguments);
+    launch({device, kernel, "warm-up of " + std::string(stage), 1, local_size}, arguments);
     device.finish(stage);
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "film/develop.h"
+#include "film/visit_map.h"
 
 namespace obscura {
 namespace {
@@ -46,6 +47,10 @@ void join_texture_coordinates(Image& image) {
 void rename(Layer& layer) {
     if (layer.name.empty()) {
         layer.name = BLENDER_BEAUTY;
+        return;
+    }
+    if (layer.name == VISIT_LAYER) {  // no layer of the film
+        layer.name = std::string(VIEW_LAYER) + "Visits";
         return;
     }
     const LayerInfo& info = layer_info(layer.name);

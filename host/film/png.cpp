@@ -11,9 +11,9 @@
 
 namespace obscura {
 
-PngCanvas::PngCanvas(const Image& image)
+PngCanvas::PngCanvas(const Image& image, uint32_t rows_below)
     : width_(static_cast<uint32_t>(image.full_width)),
-      height_(static_cast<uint32_t>(image.full_height)),
+      height_(static_cast<uint32_t>(image.full_height) + rows_below),
       rgba_(size_t{4} * width_ * height_) {}
 
 void PngCanvas::set(int32_t x, int32_t y, const Rgb8& color) {

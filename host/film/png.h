@@ -15,8 +15,8 @@ using Rgb8 = std::array<uint8_t, 3>;  // sRGB encoded
 
 class PngCanvas {
   public:
-    // All pixels start transparent black.
-    explicit PngCanvas(const Image& image);
+    // All pixels start transparent black; below the picture there may be more rows.
+    explicit PngCanvas(const Image& image, uint32_t rows_below = 0);
 
     // Sets an opaque pixel; x and y count from the whole picture's corner.
     void set(int32_t x, int32_t y, const Rgb8& color);

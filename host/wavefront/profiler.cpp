@@ -9,8 +9,8 @@
 
 namespace obscura {
 
-void Profiler::record(const std::string& row, uint64_t items, const cl::Event& event) {
-    pending_.push_back({row, items, event});
+void Profiler::record(const std::string& row, uint64_t items, uint64_t work_items, const cl::Event& event) {
+    pending_.push_back({row, items, work_items, event});
 }
 
 void Profiler::set_items(const std::string& row, uint64_t items) {
@@ -30,6 +30,7 @@ void Profiler::collect() {
         StageProfile& row = rows_[launch.row];
         ++row.launches;
         row.items += launch.items;
+        row.work_items += launch.work_items;
         row.ms += static_cast<double>(end - start) * 1e-6;
     }
     pending_.clear();

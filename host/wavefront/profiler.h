@@ -15,7 +15,8 @@ namespace obscura {
 struct StageProfile {
     uint64_t launches = 0;
     uint64_t items = 0;
-    double ms = 0;  // on the device, start to end
+    uint64_t work_items = 0;  // launched, with work or without
+    double ms = 0;            // on the device, start to end
 };
 
 class Profiler {
@@ -23,8 +24,8 @@ class Profiler {
     // device_name: for error messages.
     explicit Profiler(std::string device_name) : device_name_(std::move(device_name)) {}
 
-    // row: "trace_camera", "shade" ...; items: work of the launch as its stage counts it.
-    void record(const std::string& row, uint64_t items, const cl::Event& event);
+    // row: "trace_camera", "shade" ...; items: work of the launch as its stage counts it; work_items: of its grid.
+    void record(const std::string& row, uint64_t items, uint64_t work_items, const cl::Event& event);
     // Replaces the item count of the row's latest launch, which is not collected yet, once the device has told it.
     void set_items(const std::string& row, uint64_t items);
     // Reads the times of finished launches. Call when the queue is idle.
@@ -35,7 +36,7 @@ class Profiler {
   private:
     struct Pending {
         std::string row;
-        uint64_t items;
+        uint64_t items, work_items;
         cl::Event event;
     };
     std::string device_name_;

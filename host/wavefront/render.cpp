@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <future>
 
 #include "base/error.h"
@@ -82,13 +83,17 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     check_aspect(settings, select_camera(job.scene, settings).aspect_ratio);
     result.needs = analyse_needs(job.scene, settings);
     const LayerPlanes planes = assign_planes(result.needs, wanted_layers(job.layers));
+    result.planes = planes;
     const PixelRect rect = crop_pixels(settings.crop, settings.width, settings.height);
     check_picture_memory(rect, job.layers, plane_count(planes));
 
     // The builder works on one core, everything up to the upload on another.
     std::future<Bvh> building;
     if (job.bvh == nullptr)
-        building = std::async(std::launch::async, [&] { return build_bvh(job.scene, job.bvh_quality); });
+        building = std::async(std::launch::async, [&] {
+            const TraceStep step(device.trace(), TraceCategory::host, "build BVH");
+            return build_bvh(job.scene, job.bvh_quality);
+        });
     result.d_max = resolve_max_distance(settings.d_max, job.scene);
     result.radiometry = compute_radiometry(job.scene);
     check_ambient(job.scene, result.radiometry, settings);
@@ -104,6 +109,7 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     const SceneBuffers scene = upload_scene(device, arrays, bvh);
     const uint64_t max_allocation = device.info().max_allocation_bytes;
     const QueueShape shape = queue_shape(result.needs, settings, plane_count(planes));
+    result.shape = shape;
     const std::vector<PixelRect> bands = film_bands(rect, shape.layer_planes, max_allocation);
     const uint64_t sample_count = bands.front().pixel_count() * settings.spp;
     result.wave_capacity = wave_capacity(shape, job.wave_size, job.queue_bytes, max_allocation, sample_count);
@@ -112,11 +118,16 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
         allocate_queues(device, shape, result.wave_capacity, largest_band, bit_reversed_order(settings.spp));
     result.seconds.upload = upload_watch.seconds();
 
+    std::optional<VisitRecorder> visits;
+    if (job.count_visits)
+        visits.emplace(device, library, result.needs, settings.needs == NeedsMode::all, job.portable, scene);
+
     place_image(result.image, settings, rect);
     const Stopwatch render_watch;
     Profiler profiler(device.name());
     Scheduler scheduler(device, kernels, scene, queues, library.local_size(), profiler);
     scheduler.observe(job.observer);
+    if (visits) scheduler.observe(std::bind_front(&VisitRecorder::observe, &*visits));
     const FrameInput input{job.scene,
                            settings,
                            result.radiometry,
@@ -146,11 +157,17 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
         result.samples_per_pixel = std::min(result.samples_per_pixel, static_cast<uint32_t>(passes));
         std::vector<FilmSum> sums(band.pixel_count() * shape.layer_planes);
         if (done > 0) queues.film.download(sums);
+        const TraceStep step(device.trace(), TraceCategory::host, "develop");
         develop_band({planes, sums, pixel_order, passes, done % band.pixel_count()}, job.layers,
                      result.image);
+        if (visits) visits->finish_band(pixel_order, passes, done % band.pixel_count());
         samples_before += band_samples;
     }
     result.seconds.render = render_watch.seconds();
+    if (visits) {
+        result.visits = visits->visits();
+        result.seconds.render -= result.visits->seconds;
+    }
     result.rays = scheduler.rays();
     result.profile = profiler.rows();
     result.bytes = peak_bytes(device);

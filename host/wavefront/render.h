@@ -9,11 +9,14 @@
 #include "scene/radiometry.h"
 #include "scene/scene.h"
 #include "scene/settings.h"
+#include "wavefront/frame.h"
 #include "wavefront/profiler.h"
 #include "wavefront/scheduler.h"
+#include "wavefront/visit_recorder.h"
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +35,7 @@ struct RenderJob {
     BvhQuality bvh_quality = BvhQuality::high;
     DepthObserver observer = {};  // optional
     const Bvh* bvh = nullptr;     // of the scene, built already; built here if null
+    bool count_visits = false;    // fills RenderResult::visits, in about the time of another render
 };
 
 // Wall times, seconds. The BVH is built while the kernels are compiled.
@@ -46,6 +50,9 @@ struct RenderResult {
     Image image;  // its attributes are filled
     RenderSeconds seconds;
     RayCounts rays;
+    QueueShape shape;
+    LayerPlanes planes{};
+    std::optional<RenderVisits> visits;
     std::map<std::string, StageProfile> profile;
     Radiometry radiometry;
     Needs needs;

@@ -10,6 +10,19 @@
 #include "shared/wavefront.h"
 
 namespace obscura {
+namespace {
+
+// The lengths of the queues from the beginning of a depth on.
+void trace_queues(const Device& device, int64_t time_ns, const Work& work, const DeviceStatus& status) {
+    const CommandLog* const commands = device.commands();
+    if (commands == nullptr) return;
+    commands->set_queue_length("camera rays", time_ns, work.depth == 0 ? work.count : 0);
+    commands->set_queue_length("glossy rays", time_ns, work.depth == 0 ? 0 : work.count);
+    commands->set_queue_length("shadow rays", time_ns, status[COUNT_SHADOWS]);
+    commands->set_queue_length("obscurance points", time_ns, status[COUNT_POINTS]);
+}
+
+}  // namespace
 
 Scheduler::Scheduler(Device& device, const StageKernels& kernels, const SceneBuffers& scene, Queues& queues,
                      uint32_t local_size, Profiler& profiler)
@@ -27,7 +40,7 @@ bool Scheduler::launches(const StageInfo& stage) const {
 
 cl::Event Scheduler::launch_stage(const StageInfo& info, const Work& work) const {
     const cl::Kernel& kernel = kernels_[static_cast<uint32_t>(info.stage)];
-    return launch({device_, kernel, info.name, info.items(work, queues_.shape), local_size_},
+    return launch({device_, kernel, info.row(work.depth), info.items(work, queues_.shape), local_size_},
                   stage_arguments(info, scene_, queues_, work));
 }
 
@@ -35,7 +48,9 @@ void Scheduler::run_stages(StageTime time, const Work& work) {
     for (const StageInfo& info : STAGES) {
         if (info.time != time || !launches(info)) continue;
         const cl::Event event = launch_stage(info, work);
-        profiler_.record(std::string(info.row(work.depth)), info.items(work, queues_.shape), event);
+        const uint64_t items = info.items(work, queues_.shape);
+        profiler_.record(std::string(info.row(work.depth)), items, grid_size(device_, items, local_size_),
+                         event);
     }
 }
 
@@ -55,6 +70,7 @@ uint64_t Scheduler::render(const Frame& frame, const WaveCallback& after_wave) {
 }
 
 void Scheduler::run_wave(const Frame& frame, const Wave& wave) {
+    const TraceStep step(device_.trace(), TraceCategory::host, "wave");
     const Work samples{.first_pixel = wave.first_pixel,
                        .first_pass = wave.first_pass,
                        .count = wave.count,
@@ -70,12 +86,15 @@ void Scheduler::run_wave(const Frame& frame, const Wave& wave) {
     run_stages(StageTime::wave_end, samples);
     read_status();
     profiler_.collect();
+    if (CommandLog* const commands = device_.commands()) commands->collect();
 }
 
 uint32_t Scheduler::run_depth(const Frame& frame, const Work& work) {
+    const TraceStep step(device_.trace(), TraceCategory::host, fmt::format("depth {}", work.depth));
     queues_.counters.clear();
     run_stages(StageTime::each_depth, work);
     const DeviceStatus status = read_status();  // the only host wait of a depth
+    trace_queues(device_, step.start_ns(), work, status);
     for (const StageInfo& info : STAGES) {
         if (info.counted != nullptr && launches(info))
             profiler_.set_items(std::string(info.row(work.depth)), info.counted(status, queues_.shape));
@@ -92,6 +111,7 @@ uint32_t Scheduler::run_depth(const Frame& frame, const Work& work) {
 }
 
 DeviceStatus Scheduler::read_status() const {
+    const TraceStep step(device_.trace(), TraceCategory::host, "wait");
     DeviceStatus status{};
     queues_.counters.download(status);
     if (status[STATUS_CODE] == STATUS_OK) return status;

@@ -79,7 +79,7 @@ class Interrupt(unittest.TestCase):
         (self.folder / "x.exr").write_text("an earlier picture", encoding="utf-8")
         with tempfile.TemporaryDirectory() as cache:  # without compiled kernels there is time before the first wave
             messages = self.stop(SCENE.name, {"OBSCURA_CACHE_DIR": cache, "POCL_CACHE_DIR": cache})
-        self.assertIn("nothing is written", messages)
+        self.assertIn("no picture is written", messages)
         self.assertEqual("an earlier picture", (self.folder / "x.exr").read_text(encoding="utf-8"))
         self.assertEqual(1, len(list(self.folder.iterdir())))
 

@@ -81,7 +81,7 @@ KEEPS_PICTURE = {
 # Each has its own test below.
 OTHERS = {
     "--width", "--height", "--cropwindow", "--layers", "--preview", "--exposure", "--stats", "--quiet", "--device",
-    "--output --outfile", "--exr-names",
+    "--output --outfile", "--exr-names", "--trace", "--profile", "--heatmap",
 }
 
 
@@ -309,6 +309,45 @@ class Options(unittest.TestCase):
     def test_quiet_prints_nothing(self):
         self.assertNotEqual("", self.render("loud", []).stderr)
         self.assertEqual("", self.render("quiet", ["--quiet"]).stderr)
+
+    def test_trace_is_written_and_keeps_the_picture(self):  # what is in it: trace_file_test.py
+        self.render("traced", ["--trace", self.folder / "trace.json"])
+        self.assertFalse(self.differs("traced"))
+        names = {event["name"] for event in json.loads((self.folder / "trace.json").read_text())["traceEvents"]}
+        self.assertLess(set(self.stats("traced")["kernels"]), names)
+
+    def test_profile_prints_a_row_for_each_stage_and_queue(self):
+        printed = self.render("profiled", ["--profile"]).stdout
+        self.assertFalse(self.differs("profiled"))
+        stats = self.stats("profiled")
+        profile = stats["profile"]
+        self.assertEqual(set(stats["kernels"]), set(profile["stages"]))
+        self.assertAlmostEqual(1, sum(stage["share"] for stage in profile["stages"].values()))
+        for name, stage in profile["stages"].items():
+            self.assertRegex(printed, rf"(?m)^{name} .* {re.escape(stage['bound'])}$")
+            self.assertGreater(stage["bytes"], 0)
+            self.assertLessEqual(stage["fill"], 1)
+        for name, queue in profile["queues"].items():
+            self.assertRegex(printed, rf"(?m)^{name} .* nodes +{queue['nodes_per_ray']:.2f} ")
+            self.assertEqual(stats["rays"][name], queue["rays"])
+            self.assertEqual([queue["rays"]] * 3, [sum(counts) for counts in queue["histograms"].values()])
+        self.assertEqual({"camera", "shadow", "glossy", "obscurance"}, set(profile["queues"]))
+
+    def test_profile_leaves_standard_output_to_the_statistics(self):
+        result = obscura("render", self.scene, "-o", self.folder / "profiled.exr", "--profile", "--stats", "-", "--needs", "all",
+                         "--width", "8", "--height", "6", "--spp", "1")
+        self.assertIn("profile", json.loads(result.stdout))
+
+    def test_heat_map_is_a_picture_and_a_layer(self):
+        heat = self.folder / "heat.png"
+        messages = self.render("heat", ["--heatmap", heat]).stderr
+        self.assertRegex(messages, r"heat.png: from black for 0 to pale yellow for \d+ nodes per sample; the most are \d+")
+        self.assertEqual([*self.layers("base"), "visits"], self.layers("heat"))
+        width, height = struct.unpack(">2I", heat.read_bytes()[16:24])
+        self.assertEqual(24, width)
+        self.assertGreater(height, 18)  # the colours' scale is below the picture
+        self.render("blender", ["--heatmap", heat, "--exr-names", "blender"])
+        self.assertIn("ViewLayer.Visits", self.layers("blender"))
 
     def test_unknown_device_is_refused(self):
         result = obscura("render", self.scene, "-o", self.folder / "x.exr", "--device", "no such device")

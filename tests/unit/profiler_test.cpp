@@ -9,7 +9,7 @@ namespace {
 
 TEST(Profiler, ItemsOfARowThatWasNotLaunchedAbort) {
     Profiler profiler("device");
-    profiler.record("shade", 1, {});
+    profiler.record("shade", 1, 1, {});
     EXPECT_DEATH(profiler.set_items("shadow", 1), "no new launch of shadow");
 }
 
