@@ -47,7 +47,7 @@ cl::Event launch(const Launch& run, std::span<const LaunchArgument> arguments) {
     check(clEnqueueNDRangeKernel(run.device.queue()(), run.kernel(), 1, nullptr, &global, &local, 0, nullptr,
                                  &event),
           "clEnqueueNDRangeKernel", run.stage, run.device.name(), run.item_count);
-    const cl::Event launched(event);  // takes over the reference that the call gave
+    cl::Event launched(event);  // takes over the reference that the call gave
     if (CommandLog* const commands = run.device.commands())
         commands->add(TraceCategory::kernel, std::string(run.stage), {"items", run.item_count}, launched);
     return launched;

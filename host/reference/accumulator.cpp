@@ -51,8 +51,8 @@ void add(double* sums, const RgbD& value) {
 // As PathLight::diffuse().
 double diffuse_sum(const double* pixel, size_t channel) {
     double sum = 0;
-    for (const size_t part : {LAYER_DIRECT, LAYER_AMBIENT, LAYER_SPECULAR_DIRECT, LAYER_SPECULAR_AMBIENT})
-        sum += pixel[PARTS + 3 * part + channel];
+    for (const auto part : {LAYER_DIRECT, LAYER_AMBIENT, LAYER_SPECULAR_DIRECT, LAYER_SPECULAR_AMBIENT})
+        sum += pixel[PARTS + 3 * static_cast<size_t>(part) + channel];
     return sum;
 }
 

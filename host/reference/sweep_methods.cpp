@@ -58,7 +58,7 @@ void add_samplers(MethodList& list) {
 }
 
 void add_splits(MethodList& list) {
-    for (const uint32_t rays : {10, 2, 1}) {
+    for (const uint32_t rays : {10u, 2u, 1u}) {
         list.add_sampling(fmt::format("k{}", rays),
                           fmt::format("lattice, {} obscurance ray{} per sample", rays, rays == 1 ? "" : "s"),
                           [rays](RenderSettings& settings) { settings.obscurance_rays = rays; });
@@ -122,6 +122,7 @@ std::vector<SweepMethod> sweep_methods(const RenderSettings& base) {
 std::vector<SweepMethod> choose_methods(const std::vector<SweepMethod>& methods,
                                         std::span<const std::string> names) {
     std::vector<std::string> known;
+    known.reserve(methods.size());
     for (const SweepMethod& method : methods)
         known.push_back(method.name);
     for (const std::string& name : names) {

@@ -36,6 +36,7 @@ Cell collect(const std::vector<SweepResult>& results, const std::string& method,
 template <typename Item, typename Value>
 std::vector<double> values_of(const std::vector<const Item*>& items, const Value& value) {
     std::vector<double> values;
+    values.reserve(items.size());
     for (const Item* item : items)
         values.push_back(value(*item));
     return values;
@@ -107,6 +108,7 @@ std::optional<Estimate> fit_exponent(const std::vector<Cell>& cells, const std::
         seeds = std::min(seeds, cell.runs.size());
     for (size_t seed = 0; seed < seeds; ++seed) {
         std::vector<double> squares;
+        squares.reserve(cells.size());
         for (const Cell& cell : cells)
             squares.push_back(cell.runs[seed]->errors.at(layer).mse - noise);
         const std::optional<PowerLaw> law = fit_power_law(abscissas, squares);
