@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <exception>
 #include <filesystem>
 #include <future>
 #include <memory>
@@ -60,17 +61,25 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
     const RenderSettings settings = settings_of(options);
     const std::vector<std::string> layers = resolve_layers(out.layers);
     const uint64_t queue_bytes = parse_bytes(options.memory);
-    // The driver starts while the scene is read.
-    std::future<std::unique_ptr<Device>> opening = std::async(std::launch::async, [&] {
-        const TraceStep step(&trace, TraceCategory::host, "open device");
-        return std::unique_ptr<Device>(new Device(open_device(options.device)));
-    });
-    const Scene scene = load_gltf(scene_file);
+    // The scene is read while the driver starts: in the other thread of the two, as Oclgrind 21.10 crashes when a device is
+    // used by another thread than the one that opened it.
     RunSeconds seconds;
-    seconds.load = run.seconds();
-    trace.add_step(TraceCategory::host, "load", 0, trace.now_ns(), {});
-
-    const std::unique_ptr<Device> opened = opening.get();
+    std::future<Scene> reading = std::async(std::launch::async, [&] {
+        const TraceStep step(&trace, TraceCategory::host, "load");
+        Scene read = load_gltf(scene_file);
+        seconds.load = run.seconds();
+        return read;
+    });
+    std::unique_ptr<Device> opened;
+    std::exception_ptr no_device;
+    try {
+        const TraceStep step(&trace, TraceCategory::host, "open device");
+        opened.reset(new Device(open_device(options.device)));
+    } catch (const std::exception&) {
+        no_device = std::current_exception();
+    }
+    const Scene scene = reading.get();  // what is wrong with the scene is told first
+    if (no_device) std::rethrow_exception(no_device);
     Device& device = *opened;
     if (!out.trace.empty()) device.log_commands(trace);
     ProgramLibrary library(device, options.local_size);
