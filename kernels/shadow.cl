@@ -4,8 +4,8 @@
 //   Writes   visibility[result index of ray i]: rgb transmittance, 0 when something opaque is in the way
 #include "lib/layers.clh"
 #include "lib/pane.clh"
+#include "lib/queued_rays.clh"
 #include "lib/status.clh"
-#include "lib/stream.clh"
 
 // Of each ray of a stream that sees its light through panes.
 typedef struct PassingRays {
@@ -67,12 +67,8 @@ SHARE_FUNCTION trace_shadow_rays(global const BvhNode* nodes, global const Trian
     RayStream stream;
     PassingRays passing;
     for (uint first = share.first; first < share.last; first += STREAM_RAYS) {
-        const uint count = min(share.last - first, STREAM_RAYS);
-        stream.count = 0u;
-        for (uint i = first; i < first + count; ++i) {
-            const float4 direction = shadow_rays[SHADOW_DIRECTION * capacity + i];
-            add_ray(&stream, shadow_rays[SHADOW_ORIGIN * capacity + i].xyz, direction.xyz, direction.w);
-        }
+        read_shadow_rays(shadow_rays, capacity, first, share.last, &stream);
+        const uint count = stream.count;
         trace_stream(nodes, blocks, &stream, true);
         stream.count = 0u;
         for (uint ray = 0u; ray < count; ++ray) {

@@ -4,7 +4,7 @@
 #define COUNT_VISITS
 #include "lib/layers.clh"
 #include "lib/obscurance_ray.clh"
-#include "lib/stream.clh"
+#include "lib/queued_rays.clh"
 
 // rays: origin with t_max, direction. any_hit: 1 = whether anything is hit, 0 = the nearest hit. Of each ray
 //   counts  nodes, blocks, the most entries on its stack, 1 if it hit something
@@ -41,10 +41,7 @@ SHARE_FUNCTION trace_share(global const Frame* frame, global const BvhNode* node
     const uint capacity = frame->crop.w;
     RayStream stream;
     for (uint first = share.first; first < share.last; first += stream.count) {
-        stream.count = 0u;
-        for (uint i = first; i < min(first + STREAM_RAYS, share.last); ++i)
-            add_ray(&stream, rays[RAY_ORIGIN * capacity + i].xyz, rays[RAY_DIRECTION * capacity + i].xyz,
-                    INFINITY);
+        read_rays(rays, capacity, first, share.last, &stream);
         trace_stream(nodes, blocks, &stream, false);
         for (uint ray = 0u; ray < stream.count; ++ray) {
             const uint slot = as_uint(rays[RAY_ORIGIN * capacity + first + ray].w);
@@ -66,11 +63,7 @@ SHARE_FUNCTION shadow_share(global const Frame* frame, global const BvhNode* nod
     const uint capacity = frame->crop.w * light_sample_count(frame);
     RayStream stream;
     for (uint first = share.first; first < share.last; first += stream.count) {
-        stream.count = 0u;
-        for (uint i = first; i < min(first + STREAM_RAYS, share.last); ++i) {
-            const float4 direction = shadow_rays[SHADOW_DIRECTION * capacity + i];
-            add_ray(&stream, shadow_rays[SHADOW_ORIGIN * capacity + i].xyz, direction.xyz, direction.w);
-        }
+        read_shadow_rays(shadow_rays, capacity, first, share.last, &stream);
         trace_stream(nodes, blocks, &stream, true);
         for (uint ray = 0u; ray < stream.count; ++ray) {
             const uint result = as_uint(shadow_rays[SHADOW_ORIGIN * capacity + first + ray].w);

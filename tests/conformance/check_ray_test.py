@@ -119,7 +119,7 @@ class CheckRay(unittest.TestCase):
         for queue, file, text, replacement in (
                 ("obscurance", "lib/obscurance_result.clh", "* frame->obscurance.y;", "* (1.001f * frame->obscurance.y);"),
                 ("obscurance", "lib/obscurance_result.clh", "length(start + hit.t * direction)", "length(1.001f * hit.t * direction)"),
-                ("shadow", "shadow.cl", "direction.xyz, direction.w);", "direction.xyz, 0.5f * direction.w);")):
+                ("shadow", "lib/queued_rays.clh", "direction.xyz, direction.w);", "direction.xyz, 0.5f * direction.w);")):
             environment = self.planted(file, text, replacement)
             for transform in ({}, {"translation": [1e6, -3e5, 2e6]}):
                 with self.subTest(replacement, **transform):

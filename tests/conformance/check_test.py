@@ -29,7 +29,7 @@ MUTANTS = [
     ("rho for another d_max", "room", "lib/obscurance_result.clh", "* frame->obscurance.y;", "* (1.001f * frame->obscurance.y);"),
     ("rays beyond d_max", "room", "lib/obscurance_ray.clh", "sqrt(fmax(0.0f, d_max * d_max - across2)) - along", "2.0f * d_max"),
     ("colours from the wrong corner", "room", "lib/obscurance_result.clh", "texels, tables, hit.u, hit.v)", "texels, tables, hit.v, hit.u)"),
-    ("shadow rays that stop half-way", "room", "shadow.cl", "direction.xyz, direction.w);", "direction.xyz, 0.5f * direction.w);"),
+    ("shadow rays that stop half-way", "room", "lib/queued_rays.clh", "direction.xyz, direction.w);", "direction.xyz, 0.5f * direction.w);"),
     ("panes that dim too little", "room", "lib/pane.clh", "(1.0f - pane_reflectance(cosine))", "(1.0f - 0.99f * pane_reflectance(cosine))"),
 ]
 

@@ -140,10 +140,10 @@ class Bench(unittest.TestCase):
     def test_kernels_that_answer_wrongly_have_no_ratio(self):
         kernels = self.folder / "kernels"
         subprocess.run(["cp", "-r", SCENE.parents[1] / "kernels", kernels], check=True)
-        trace = kernels / "trace.cl"
-        source = trace.read_text(encoding="utf-8")
+        rays = kernels / "lib/queued_rays.clh"
+        source = rays.read_text(encoding="utf-8")
         self.assertEqual(1, source.count("INFINITY)"), "the reach of camera and glossy rays")
-        trace.write_text(source.replace("INFINITY)", "1.0f)"), encoding="utf-8")
+        rays.write_text(source.replace("INFINITY)", "1.0f)"), encoding="utf-8")
         environment = {**os.environ, "OBSCURA_KERNEL_DIR": str(kernels), "OBSCURA_CACHE_DIR": str(self.folder)}
         result = subprocess.run([PROGRAM, "bench", SCENE, *SIZE, "--quiet", "--json", "-"], capture_output=True, text=True,
                                 check=False, env=environment)
