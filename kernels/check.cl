@@ -23,8 +23,8 @@ SHARE_FUNCTION trace_points(global const Frame* frame, global const BvhNode* nod
         for (uint ray = 0u; ray < stream.count; ++ray) {
             const uint i = owners.point[ray];
             const uint item = i * k_count + owners.result[ray] % k_count;
-            out[item] = (float4)(stream_origin(&stream, ray), stream.t_max[ray]);
-            out[count + item] = (float4)(stream_direction(&stream, ray), as_float(owners.result[ray]));
+            out[item] = stream.origin[ray];
+            out[count + item] = (float4)(stream.direction[ray].xyz, as_float(owners.result[ray]));
             out[2u * count + item] = hit_lane(stream_hit(&stream, ray));
             out[3u * count + item] = (float4)(ray_start(frame, points, i), 0.0f);
         }
@@ -80,16 +80,22 @@ SHARE_FUNCTION result_share(global const Frame* frame, global const BvhNode* nod
                     distance_limit(starts[i].xyz, direction, frame->obscurance.x));
         }
         trace_stream(nodes, blocks, &stream, !NEED_NEAREST_OCCLUDER);
+        float rho[STREAM_RAYS];
+        for (uint ray = 0u; ray < stream.count; ++ray) {
+            rho[ray] =
+                hit_distance(frame, starts[first + ray].xyz, stream.direction[ray].xyz, stream.hit[ray].x);
+        }
+        apply_falloff(frame, rho, stream.count);
         for (uint ray = 0u; ray < stream.count; ++ray) {
             const uint i = first + ray;
             const Hit hit = stream_hit(&stream, ray);
             const float3 start = starts[i].xyz;
             bool overflow = false;
             const float4 result = trace_obscurance(frame, nodes, blocks, triangles, materials, texels, tables,
-                                                   rays[2u * i].xyz - start, start,
-                                                   stream_direction(&stream, ray), hit, &overflow);
+                                                   rays[2u * i].xyz - start, start, stream.direction[ray].xyz,
+                                                   hit, rho[ray], &overflow);
             out[i] = hit_lane(hit);
-            out[count + i] = (float4)(stream.t_max[ray], 0.0f, 0.0f, 0.0f);
+            out[count + i] = (float4)(stream.origin[ray].w, 0.0f, 0.0f, 0.0f);
             out[2u * count + i] = overflow ? (float4)(NAN) : result;
         }
     }

@@ -41,8 +41,8 @@ inline void pass_panes(global const BvhNode* nodes, global const TriangleBlock* 
                 global const SceneMaterial* material = materials + triangle->ids.x;
                 if (is_pane(material) && segment < MAX_PANES) {
                     const float3 first_direction = shadow_rays[SHADOW_DIRECTION * capacity + item].xyz;
-                    const float3 direction = stream_direction(stream, ray);
-                    const float t_light = stream->t_max[ray];
+                    const float3 direction = stream->direction[ray].xyz;
+                    const float t_light = stream->origin[ray].w;
                     const Surface s = make_surface(triangle, hit.u, hit.v, direction);
                     const float3 base = base_color(triangle, material, texels, tables, hit.u, hit.v);
                     passed *= pane_transmittance(material, base, -dot(normalize(first_direction), s.n_geo));
@@ -78,10 +78,10 @@ SHARE_FUNCTION trace_shadow_rays(global const BvhNode* nodes, global const Trian
             if (!check_slot(counters, result, capacity, STAGE_SHADOW, i)) continue;
             const Hit hit = stream_hit(&stream, ray);
             if (isnan(hit.t)) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_SHADOW, i);
-            const bool blocked = hit.t < stream.t_max[ray];
+            const bool blocked = hit.t < stream.origin[ray].w;
             if (NEED_TRANSMISSION && !blocked && hit.primitive != NO_PRIMITIVE) {
-                add_passing_ray(&stream, &passing, i, (float3)(1.0f), origin.xyz,
-                                stream_direction(&stream, ray), stream.t_max[ray]);
+                add_passing_ray(&stream, &passing, i, (float3)(1.0f), origin.xyz, stream.direction[ray].xyz,
+                                stream.origin[ray].w);
             } else {
                 visibility[result] = (float4)((float3)(blocked ? 0.0f : 1.0f), 0.0f);
             }

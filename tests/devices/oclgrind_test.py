@@ -38,7 +38,7 @@ MISUSES = {
 # What goes wrong, the file, its text, what replaces that, and what Oclgrind calls it.
 MUTANTS = [
     ("points share their results", "lib/obscurance_ray.clh", "= slot * k_count + first_k", "= first_k", "data race"),
-    ("a miss has no weights", "lib/stream_walk.clh", "stream->u[i + lane] = stream->v[i + lane] = 0.0f;", "stream->v[i + lane] = 0.0f;",
+    ("a miss has no weights", "lib/intersect.clh", "    hit.u = 0.0f;\n", "",
      "Uninitialized value"),
     ("results lie behind their buffer", "lib/obscurance_ray.clh", "= slot * k_count + first_k",
      "= (slot + frame->crop.w) * k_count + first_k", "Invalid write"),
