@@ -31,6 +31,18 @@ const char* robustness(bool robust) {
     return robust ? "robust" : "fast";
 }
 
+const char* query_name(RayQuery query) {
+    switch (query) {
+        case RayQuery::closest:
+            return "closest";
+        case RayQuery::any:
+            return "any";
+        case RayQuery::opaque:
+            return "any but panes";
+    }
+    return "";
+}
+
 // --- JSON ------------------------------------------------------------------------------------------------------
 
 void put_spread(Json& json, const std::string& name, const Spread& spread, double unit = 1) {
@@ -60,9 +72,7 @@ Json to_json(const PairedTimes& times, const ModeResult& best, bool agrees) {
 }
 
 Json to_json(const QueueBench& queue) {
-    Json json{{"rays", queue.robust.rays},
-              {"hits", queue.visits.hits},
-              {"query", queue.query == RayQuery::any ? "any" : "closest"}};
+    Json json{{"rays", queue.robust.rays}, {"hits", queue.visits.hits}, {"query", query_name(queue.query)}};
     json.update(to_json(queue.robust, queue.best(true), queue.agrees()));
     json["fast"] = to_json(queue.fast, queue.best(false), queue.agrees());
     json["agrees"] = queue.agrees();
@@ -191,7 +201,10 @@ void print_tables(const SceneBench& bench, const Scene& scene, const DeviceInfo&
     print_costs(bench, scene.triangles.size());
     fmt::print("The device's obscurance kernel also makes the directions and finds falloff and colours.\n");
     if (bench.has_panes)
-        fmt::print("Its shadow and obscurance rays go on behind panes; Embree's end at the first.\n");
+        fmt::print(
+            "Shadow rays pass through panes on both sides; obscurance rays go on behind them on the device, "
+            "in "
+            "Embree they end there.\n");
     for (const QueueBench* queue : queues) {
         if (queue->agrees()) continue;
         fmt::print("{}: the hits differ in more than {} of the rays: there is nothing to compare.\n",

@@ -51,7 +51,7 @@ struct QueueBench {
 struct SceneBench {
     std::array<QueueBench, 4> queues;
     uint32_t waves = 0;
-    bool has_panes = false;  // behind which the device's shadow and obscurance rays go on, but not Embree's
+    bool has_panes = false;  // behind which the device's obscurance rays go on, but not Embree's
     int threads = 0;         // of Embree
     uint64_t bvh_bytes = 0;
     double build_seconds = 0;

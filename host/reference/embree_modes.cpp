@@ -5,6 +5,7 @@
 #include "reference/embree_scene.h"
 #include "reference/flush_denormals.h"
 #include "reference/ray_order.h"
+#include "scene/material.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -12,8 +13,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <numeric>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -72,7 +75,7 @@ void trace_single(const Work& work, RayQuery query) {
     for (size_t i = 0; i < work.count; ++i) {
         const RayBlock& block = work.rays[i / BLOCK];
         HitBlock& hits = work.hits[i / BLOCK];
-        if (query == RayQuery::any) {
+        if (query != RayQuery::closest) {
             RTCRay ray = ray_of(block, i % BLOCK);
             rtcOccluded1(work.scene, work.context, &ray);
             store(ray, hits, i % BLOCK);
@@ -118,7 +121,7 @@ void trace_packets(const Work& work, RayQuery query, const Closest& closest, con
             valid[lane] = first + lane < work.count ? -1 : 0;
         RayHit packet;
         packet.ray = packet_of<Ray>(work.rays[first / BLOCK], begin);
-        if (query == RayQuery::any) {
+        if (query != RayQuery::closest) {
             any(valid.data(), work.scene, work.context, &packet.ray);
             for (size_t lane = 0; lane < WIDTH; ++lane)
                 hits.primitive[begin + lane] = packet.ray.tfar[lane] < 0 ? 0 : NO_PRIMITIVE;
@@ -161,7 +164,7 @@ void trace_part(const Work& work, EmbreeCall call, RayQuery query) {
         case EmbreeCall::packet16:
             return trace_packets<RTCRayHit16>(work, query, rtcIntersect16, rtcOccluded16);
         case EmbreeCall::stream:
-            if (query == RayQuery::any) return trace_stream(work, ray_of, rtcOccluded1M);
+            if (query != RayQuery::closest) return trace_stream(work, ray_of, rtcOccluded1M);
             return trace_stream(work, query_of, rtcIntersect1M);
     }
 }
@@ -213,7 +216,8 @@ ArrangedRays::ArrangedRays(std::span<const TraceRay> rays, std::vector<uint32_t>
         block.dir_x[lane] = ray.direction.x;
         block.dir_y[lane] = ray.direction.y;
         block.dir_z[lane] = ray.direction.z;
-        block.t_max[lane] = ray.t_max;
+        // Embree's ends are inclusive, ours aren't: a shadow ray would end at its own lamp.
+        block.t_max[lane] = std::isinf(ray.t_max) ? ray.t_max : std::nextafter(ray.t_max, 0.0f);
     }
 }
 
@@ -233,12 +237,25 @@ EmbreeRays::EmbreeRays(std::span<const TraceRay> rays)
 struct EmbreeRunner::State {
     EmbreeScene robust, fast;
     tbb::task_arena threads;
+    std::optional<EmbreeScene> robust_through_panes, fast_through_panes;  // where the scene has any
 
-    const EmbreeScene& scene(bool is_robust) const { return is_robust ? robust : fast; }
+    const EmbreeScene& scene(bool is_robust, RayQuery query) const {
+        const auto& through_panes = is_robust ? robust_through_panes : fast_through_panes;
+        if (query == RayQuery::opaque && through_panes) return *through_panes;
+        return is_robust ? robust : fast;
+    }
 };
 
 EmbreeRunner::EmbreeRunner(const Scene& scene, int threads)
-    : state_(new State{EmbreeScene(scene, true), EmbreeScene(scene, false), tbb::task_arena(threads)}) {}
+    : state_(
+          new State{EmbreeScene(scene, true), EmbreeScene(scene, false), tbb::task_arena(threads), {}, {}}) {
+    const bool has_panes = std::ranges::any_of(scene.triangles, [&](const Triangle& triangle) {
+        return is_pane(scene.materials[triangle.material]);
+    });
+    if (!has_panes) return;
+    state_->robust_through_panes.emplace(scene, true, EmbreePanes::passed);
+    state_->fast_through_panes.emplace(scene, false, EmbreePanes::passed);
+}
 EmbreeRunner::~EmbreeRunner() = default;
 
 double EmbreeRunner::trace(const EmbreeMode& mode, RayQuery query, EmbreeRays& rays) const {
@@ -251,7 +268,7 @@ double EmbreeRunner::trace(const EmbreeMode& mode, RayQuery query, EmbreeRays& r
         context.flags =
             mode.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
         const size_t count = std::min(range.size() * BLOCK, arranged.size() - range.begin() * BLOCK);
-        const Work work{state_->scene(mode.robust).handle(), &context,
+        const Work work{state_->scene(mode.robust, query).handle(), &context,
                         blocks.subspan(range.begin(), range.size()),
                         arranged.hits().subspan(range.begin(), range.size()), count};
         trace_part(work, mode.call, query);
@@ -264,7 +281,7 @@ double EmbreeRunner::trace(const EmbreeMode& mode, RayQuery query, EmbreeRays& r
 }
 
 EmbreeCost EmbreeRunner::cost(bool robust) const {
-    const EmbreeScene& scene = state_->scene(robust);
+    const EmbreeScene& scene = state_->scene(robust, RayQuery::closest);
     return {scene.bytes(), scene.build_seconds()};
 }
 

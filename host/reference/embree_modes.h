@@ -30,7 +30,8 @@ const std::vector<EmbreeMode>& embree_modes();
 // "single", "packets of 8, coherent, sorted", ...: without robust or fast.
 std::string call_text(const EmbreeMode& mode);
 
-enum class RayQuery { closest, any };
+// The nearest hit; whether anything is hit; whether anything is that isn't a pane.
+enum class RayQuery { closest, any, opaque };
 
 // The rays of a launch side by side in blocks, which suit all calls, and their hits.
 class ArrangedRays {

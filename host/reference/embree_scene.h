@@ -21,10 +21,14 @@ inline constexpr float EMBREE_LARGEST = 1.844e18f;
 // beyond the scene, and only a shadow ray's direction is as long as its way.
 void check_embree_limit(const V3f& origin, const V3f& direction);
 
+// Whether occlusion ends at panes as elsewhere, or passes through them by a filter function. Then hits don't tell which of the
+// scene's triangles they are of.
+enum class EmbreePanes { solid, passed };
+
 class EmbreeScene {
   public:
     // Copies what it needs. robust: watertight intersection, as ours is; else Embree's quickest.
-    explicit EmbreeScene(const Scene& scene, bool robust = true);
+    explicit EmbreeScene(const Scene& scene, bool robust = true, EmbreePanes panes = EmbreePanes::solid);
     ~EmbreeScene();
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
@@ -38,6 +42,9 @@ class EmbreeScene {
     static constexpr float T_NEAR = std::numeric_limits<float>::min();
 
   private:
+    // The indices from first to last - 1.
+    void attach_mesh(size_t first, size_t last, EmbreePanes panes);
+
     std::vector<V3f> positions_;
     std::vector<std::array<uint32_t, 3>> indices_;
     std::atomic<int64_t> bytes_ = 0;

@@ -2,6 +2,7 @@
 #include "reference/ray_dump.h"
 
 #include "base/error.h"
+#include "scene/material.h"
 
 #include <array>
 #include <bit>
@@ -15,7 +16,7 @@ static_assert(std::endian::native == std::endian::little, "the file has the byte
 static_assert(sizeof(V3f) == 12 && sizeof(TraceRay) == 28 && sizeof(TraceHit) == 16, "no padding");
 
 constexpr std::array MAGIC{'O', 'B', 'S', 'C', 'R', 'A', 'Y', 'S'};
-constexpr uint32_t VERSION = 1;
+constexpr uint32_t VERSION = 2;
 
 struct Header {
     std::array<char, 8> magic;
@@ -46,14 +47,17 @@ RayDump::RayDump(const std::filesystem::path& path, const std::filesystem::path&
     file_.write(&header, sizeof(header));
     for (const Vertex& vertex : scene.vertices)
         file_.write(&vertex.position, sizeof(vertex.position));
-    for (const Triangle& triangle : scene.triangles)
-        file_.write(triangle.vertex.data(), sizeof(triangle.vertex));
+    for (const Triangle& triangle : scene.triangles) {
+        const std::array<uint32_t, 4> record{triangle.vertex[0], triangle.vertex[1], triangle.vertex[2],
+                                             is_pane(scene.materials[triangle.material]) ? 1u : 0u};
+        file_.write(record.data(), sizeof(record));
+    }
 }
 
 void RayDump::add(uint32_t queue, RayQuery query, std::span<const TraceRay> rays,
                   std::span<const TraceHit> hits) {
     OBSCURA_CHECK(rays.size() == hits.size(), "{} rays have {} hits", rays.size(), hits.size());
-    const LaunchHeader header{queue, query == RayQuery::any ? 1u : 0u, rays.size()};
+    const LaunchHeader header{queue, static_cast<uint32_t>(query), rays.size()};
     file_.write(&header, sizeof(header));
     std::vector<Record> records;
     records.reserve(rays.size());

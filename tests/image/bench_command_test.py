@@ -29,21 +29,22 @@ def bench(*arguments):
 
 
 def read_rays(path):
-    """Corners of all triangles, and the launches: queue, whether any hit will do, rays."""
+    """Corners of all triangles, and the launches: queue, whether any hit but of panes will do, rays."""
     data = path.read_bytes()
     assert data[:8] == b"OBSCRAYS"
-    assert numpy.frombuffer(data, "<u4", 2, 8).tolist() == [1, 0]
+    assert numpy.frombuffer(data, "<u4", 2, 8).tolist() == [2, 0]
     vertex_count, triangle_count = map(int, numpy.frombuffer(data, "<u8", 2, 16))
     vertices = numpy.frombuffer(data, "<f4", 3 * vertex_count, 32).reshape(-1, 3)
-    triangles = numpy.frombuffer(data, "<u4", 3 * triangle_count, 32 + 12 * vertex_count).reshape(-1, 3)
-    place, launches = 32 + 12 * (vertex_count + triangle_count), []
+    triangles = numpy.frombuffer(data, "<u4", 4 * triangle_count, 32 + 12 * vertex_count).reshape(-1, 4)
+    assert not triangles[:, 3].any(), "the scene has no panes"
+    place, launches = 32 + 12 * vertex_count + 16 * triangle_count, []
     while place < len(data):
         queue, query = map(int, numpy.frombuffer(data, "<u4", 2, place))
         count = int(numpy.frombuffer(data, "<u8", 1, place + 8)[0])
-        launches.append((QUEUES[queue], query == 1, numpy.frombuffer(data, RAY, count, place + 16)))
+        launches.append((QUEUES[queue], query >= 1, numpy.frombuffer(data, RAY, count, place + 16)))
         place += 16 + count * RAY.itemsize
     assert place == len(data)
-    return vertices[triangles].astype(float), launches
+    return vertices[triangles[:, :3]].astype(float), launches
 
 
 def intersect(corners, ray):

@@ -5,6 +5,7 @@
 
 #include "reference/hard_rays.h"
 #include "reference/meshes.h"
+#include "support/busy_room.h"
 #include "support/errors.h"
 
 #include <gtest/gtest.h>
@@ -63,6 +64,40 @@ TEST(EmbreeRunner, RepeatsItself) {
         const std::vector<TraceHit> second = rays.arranged(mode).hits_in_order();
         for (size_t i = 0; i < first.size(); ++i)
             ASSERT_EQ(first[i].t, second[i].t) << call_text(mode);
+    }
+}
+
+// Every third triangle lets light pass: those rays are stopped that the other triangles alone would stop.
+TEST(EmbreeRunner, OpaqueMeansAllButPanes) {
+    Scene scene = triangle_soup(1500, 0.1f, 1, 1);
+    scene.materials.push_back(test::clear_pane());
+    Scene without_panes = scene;
+    without_panes.triangles.clear();
+    for (size_t i = 0; i < scene.triangles.size(); ++i) {
+        if (i % 3 == 0) {
+            scene.triangles[i].material = static_cast<uint32_t>(scene.materials.size() - 1);
+        } else {
+            without_panes.triangles.push_back(scene.triangles[i]);
+        }
+    }
+    const EmbreeRunner runner(scene, 2), expected(without_panes, 2);
+    const std::vector<TraceRay> given = random_rays(scene, 10001, 3);
+    for (const EmbreeMode& mode : embree_modes()) {
+        SCOPED_TRACE(call_text(mode) + (mode.robust ? ", robust" : ", fast"));
+        EmbreeRays rays(given), same(given), all(given);
+        runner.trace(mode, RayQuery::opaque, rays);
+        expected.trace(mode, RayQuery::any, same);
+        runner.trace(mode, RayQuery::any, all);
+        const std::vector<TraceHit> opaque = rays.arranged(mode).hits_in_order();
+        const std::vector<TraceHit> others = same.arranged(mode).hits_in_order();
+        const std::vector<TraceHit> any = all.arranged(mode).hits_in_order();
+        size_t passed = 0;
+        for (size_t i = 0; i < given.size(); ++i) {
+            ASSERT_EQ(opaque[i].primitive != NO_PRIMITIVE, others[i].primitive != NO_PRIMITIVE)
+                << "ray " << i;
+            if (opaque[i].primitive != any[i].primitive) ++passed;
+        }
+        EXPECT_GT(passed, 50u);
     }
 }
 
