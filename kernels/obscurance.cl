@@ -18,7 +18,7 @@ SHARE_FUNCTION trace_points(global const Frame* frame, global const BvhNode* nod
     RayOwners owners;
     for (uint next = 0u; next < direction_batches(frame, share);) {
         next = gather_obscurance_rays(frame, points, paths, counters, share, next, depth, &stream, &owners);
-        trace_stream(nodes, blocks, &stream, !NEED_NEAREST_OCCLUDER);
+        trace_stream(nodes, blocks, &stream, any_occluder_will_do(frame));
         float rho[STREAM_RAYS];
         for (uint ray = 0u; ray < stream.count; ++ray) {
             rho[ray] = hit_distance(frame, ray_start(frame, points, owners.point[ray]),
@@ -31,7 +31,8 @@ SHARE_FUNCTION trace_points(global const Frame* frame, global const BvhNode* nod
             results[owners.result[ray]] =
                 trace_obscurance(frame, nodes, blocks, triangles, materials, texels, tables,
                                  points[POINT_POSITION * frame->crop.w + i].xyz, ray_start(frame, points, i),
-                                 stream.direction[ray].xyz, stream_hit(&stream, ray), rho[ray], &overflow);
+                                 stream.direction[ray].xyz, stream.origin[ray].w, stream_hit(&stream, ray),
+                                 rho[ray], &overflow);
             if (overflow) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_OBSCURANCE, i);
         }
     }

@@ -89,7 +89,7 @@ SHARE_FUNCTION obscurance_share(global const Frame* frame, global const BvhNode*
     RayOwners owners;
     for (uint next = 0u; next < direction_batches(frame, share);) {
         next = gather_obscurance_rays(frame, points, paths, counters, share, next, depth, &stream, &owners);
-        trace_stream(nodes, blocks, &stream, !NEED_NEAREST_OCCLUDER);
+        trace_stream(nodes, blocks, &stream, any_occluder_will_do(frame));
         for (uint ray = 0u; ray < stream.count; ++ray) {
             const uint slot = owners.result[ray] / k_count;
             const uint item = owners.point[ray] * k_count + owners.result[ray] % k_count;

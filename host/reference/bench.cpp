@@ -58,18 +58,14 @@ uint64_t count_differing(const std::vector<TraceHit>& device, const std::vector<
     return count;
 }
 
-// Whether any hit will do: panes have to be met one by one, colours and distances are those of the nearest hit.
-RayQuery shadow_query(const Needs& needs) {
-    return needs.transmission ? RayQuery::closest : RayQuery::any;
-}
-RayQuery obscurance_query(const Needs& needs) {
-    const bool nearest = needs.bleeding || needs.transmission || needs.falloff != FalloffKind::step;
-    return nearest ? RayQuery::closest : RayQuery::any;
+// As any_occluder_will_do() of the kernels.
+RayQuery obscurance_query(const RenderSettings& settings) {
+    return settings.falloff.kind == FalloffKind::step ? RayQuery::any : RayQuery::closest;
 }
 
-Needs needs_of(RenderJob job, NeedsMode mode) {
-    job.settings.needs = mode;
-    return analyse_needs(job.scene, job.settings);
+bool has_panes(RenderJob job) {
+    job.settings.needs = NeedsMode::automatic;
+    return analyse_needs(job.scene, job.settings).transmission;
 }
 
 // As many threads as the device has, if it runs on the same processor.
@@ -96,13 +92,9 @@ class Bench {
             for (const EmbreeMode& mode : embree_modes())
                 result_.queues[i].modes.push_back({mode});
         }
-        const Needs needs = needs_of(job, NeedsMode::automatic);
-        const Needs modelled = needs_of(job, job.settings.needs);
         result_.queues[SHADOW].query = RayQuery::opaque;
-        result_.queues[SHADOW].device_query = shadow_query(modelled);
-        result_.queues[OBSCURANCE].query = obscurance_query(needs);
-        result_.queues[OBSCURANCE].device_query = obscurance_query(modelled);
-        result_.has_panes = needs.transmission;
+        result_.queues[OBSCURANCE].query = obscurance_query(job.settings);
+        result_.has_panes = has_panes(job);
         result_.threads = embree_threads(device.info());
         result_.bvh_bytes = bvh_.bytes();
         result_.build_seconds = bvh_.build_seconds;
@@ -174,7 +166,7 @@ void Bench::survey(const ReplayLaunch& launch, RayDump* dump) {
     const std::vector<TraceRay>& rays = launch.captured.rays;
     const std::vector<TraceHit> hits = device_hits(launch);
     QueueBench& queue = result_.queues[launch.queue];
-    queue.visits.add(visits_.count(rays, queue.device_query == RayQuery::any));
+    queue.visits.add(visits_.count(rays, queue.query != RayQuery::closest));
     if (dump != nullptr) dump->add(launch.queue, queue.query, rays, hits);
     EmbreeRays arranged(rays);
     for (ModeResult& result : queue.modes) {

@@ -36,9 +36,8 @@ struct ModeResult {
 
 struct QueueBench {
     std::string name;
-    // What Embree is asked for; the device may need the closest hit where any would do, to find panes.
-    RayQuery query = RayQuery::closest, device_query = RayQuery::closest;
-    Visits visits;  // of the device's traversal, up to the first pane
+    RayQuery query = RayQuery::closest;
+    Visits visits;  // of the device's traversal; behind panes nothing is counted
     std::vector<ModeResult> modes;
     PairedTimes robust, fast;  // against the best mode of each
 

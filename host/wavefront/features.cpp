@@ -37,9 +37,10 @@ std::string define(std::string name) {
 
 std::string falloff_options(FalloffKind kind, bool all) {
     static const std::map<FalloffKind, std::string> names{
-        {FalloffKind::linear, "falloff_linear"},   {FalloffKind::sqrt, "falloff_sqrt"},
-        {FalloffKind::cbrt, "falloff_cbrt"},       {FalloffKind::exp, "falloff_exp"},
-        {FalloffKind::expjump, "falloff_expjump"}, {FalloffKind::pow, "falloff_pow"},
+        {FalloffKind::step, "falloff_step"}, {FalloffKind::linear, "falloff_linear"},
+        {FalloffKind::sqrt, "falloff_sqrt"}, {FalloffKind::cbrt, "falloff_cbrt"},
+        {FalloffKind::exp, "falloff_exp"},   {FalloffKind::expjump, "falloff_expjump"},
+        {FalloffKind::pow, "falloff_pow"},
     };
     std::string options;
     for (const auto& [one, name] : names) {

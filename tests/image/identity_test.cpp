@@ -142,6 +142,15 @@ TEST_F(Identity, SamePictureWithAllNeeds) {
     expect_same_bits(render_room(settings), reference());
 }
 
+// Kernels with all falloffs find out only then that any occluder will do, behind panes too.
+TEST_F(Identity, SameAmbientOcclusionWithAllNeeds) {
+    RenderSettings settings = room_settings();
+    settings.falloff.kind = FalloffKind::step;
+    const Image pruned = render_room(settings);
+    settings.needs = NeedsMode::all;
+    expect_same_bits(render_room(settings), pruned);
+}
+
 // The room needs nearly everything; these settings and scenes need little.
 TEST_F(Identity, SamePictureWithAllNeedsWherePruningCutsMost) {
     const Scene furnace = furnace_sphere(Rgb(0.5f, 0.3f, 0.2f), Rgb(1, 2, 3));

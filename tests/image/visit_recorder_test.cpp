@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numeric>
 
 #include "support/busy_room.h"
@@ -60,6 +61,25 @@ TEST_F(VisitRecorderTest, NodesOfThePixelsAreThoseOfTheRays) {
         of_pixels += 4.0 * static_cast<double>(nodes);
     EXPECT_EQ(result.visits->nodes_per_sample.size(), 24u * 18);
     EXPECT_NEAR(of_pixels / of_rays, 1, 1e-5);
+}
+
+// Ambient occlusion asks whether there is any occluder: at the same points, behind panes or not and with colours or without,
+// it visits less than falloffs that have to know the nearest.
+TEST_F(VisitRecorderTest, AmbientOcclusionStopsAtAnyOccluder) {
+    const Scene room = busy_room();
+    RenderSettings settings = picture(24, 18, 4, 3);
+    settings.d_max = {std::numeric_limits<double>::infinity(), MaxDistance::Unit::metres};
+    const auto blocks = [&](FalloffKind falloff) {
+        settings.falloff.kind = falloff;
+        const RenderResult result = render_counted(room, settings);
+        const RayVisits& queue = result.visits->queues.back();
+        return mean(queue.blocks) * static_cast<double>(queue.rays);
+    };
+    for (const NeedsMode needs : {NeedsMode::automatic, NeedsMode::all}) {
+        settings.needs = needs;
+        settings.bleeding = needs == NeedsMode::all;
+        EXPECT_LT(blocks(FalloffKind::step), 0.9 * blocks(FalloffKind::sqrt));
+    }
 }
 
 // Two panels side by side, seen from the front: the left half of the picture sees a finely divided one.

@@ -6,6 +6,8 @@
 #include "support/kernel_queue.h"
 #include "support/scene_builder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 
@@ -178,6 +180,37 @@ TEST_F(ObscuranceStage, SixteenPanesArePassed) {
             for (uint32_t k = 0; k < K; ++k) {
                 EXPECT_NEAR(static_cast<double>(result(wave, 0, k).w), w, 3e-3) << count << " panes";
                 EXPECT_LT((V3d(test::xyz_of(result(wave, 0, k))) - through * V3d(behind)).length(), 3e-3);
+            }
+        }
+    }
+}
+
+// Of the step only light that meets nothing opaque within d_max comes back, dimmed by the panes on its way: from the kernel
+// of every falloff and from its own, with colours and without.
+TEST_F(ObscuranceStage, StepLetsPassWhatOnlyPanesAreInTheWayOf) {
+    Material clear = test::matte(Rgb(0.5f, 0.75f, 1));
+    clear.transmission = 1;
+    test::SceneBuilder builder = sphere();
+    builder.sphere({0, 0, 0}, 0.5f, 4, builder.material(clear), true);
+    const Scene scene = builder.finish();
+    const V3d passed = (1 - pane_reflectance(1)) * V3d(clear.base_color);
+    const double mean_passed = (passed.x + passed.y + passed.z) / 3;
+    for (const char* options : {"", "-D NEED_FALLOFF_STEP=1 -D NEED_TRANSMISSION=1",
+                                "-D NEED_FALLOFF_STEP=1 -D NEED_TRANSMISSION=1 -D NEED_BLEEDING=1"}) {
+        for (const auto& [d_max, share] : {std::pair{0.4, 0}, {0.75, 1}, {2.0, 2}}) {
+            SCOPED_TRACE(fmt::format("{} d_max {}", options, d_max));
+            test::StageBench wave = bench(1, d_max, scene);
+            wave.frame.lights.z = FALLOFF_STEP;
+            if (*options != '\0') wave.kernel_options = options;
+            add_point(wave, 0, {0, 0, 0});
+            wave.run_obscurance(0);
+            const V3d miss(test::xyz_of(wave.frame.miss));
+            const V3d expected = share == 0 ? miss : share == 1 ? passed * miss : V3d(0);
+            const double colourless = share == 0 ? 1 : share == 1 ? mean_passed : 0;
+            for (uint32_t k = 0; k < K; ++k) {
+                const f32x4 w = result(wave, 0, k);
+                EXPECT_LT((V3d(test::xyz_of(w)) - expected).length(), 2e-3);
+                EXPECT_NEAR(static_cast<double>(w.w), colourless, 2e-3);
             }
         }
     }

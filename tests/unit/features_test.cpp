@@ -44,11 +44,13 @@ TEST(Features, StageDefinesOnlyWhatItDependsOn) {
     }
 }
 
-TEST(Features, SceneThatNeedsNothingDefinesNothing) {
+TEST(Features, SceneThatNeedsNothingDefinesNothingButItsFalloff) {
     Needs needs;
     needs.falloff = FalloffKind::step;
-    for (const StageInfo& info : STAGES)
-        EXPECT_EQ(stage_options(info.stage, needs, false, false), "") << info.name;
+    for (const StageInfo& info : STAGES) {
+        const char* options = info.stage == Stage::obscurance ? " -D NEED_FALLOFF_STEP=1" : "";
+        EXPECT_EQ(stage_options(info.stage, needs, false, false), options) << info.name;
+    }
 }
 
 TEST(Features, TraceIsTheSameForEveryScene) {
@@ -61,8 +63,8 @@ TEST(Features, OneFalloffIsCompiledUnlessAllAreWanted) {
     EXPECT_EQ(defined_needs(stage_options(Stage::obscurance, needs, false, false)),
               std::set<std::string>{"falloff_sqrt"});
     EXPECT_EQ(defined_needs(stage_options(Stage::obscurance, needs, true, false)),
-              (std::set<std::string>{"falloff_linear", "falloff_sqrt", "falloff_cbrt", "falloff_exp",
-                                     "falloff_expjump", "falloff_pow"}));
+              (std::set<std::string>{"falloff_step", "falloff_linear", "falloff_sqrt", "falloff_cbrt",
+                                     "falloff_exp", "falloff_expjump", "falloff_pow"}));
 }
 
 TEST(Features, PortableIsPassedToEveryStage) {
