@@ -43,7 +43,7 @@ kernel void draw(global const Frame* frame, global uint4* out, uint dimension, u
     draw_codes(&sets, j, &codes);
     for (uint lane = 0u; lane < min(BATCH, count - first); ++lane) {
         const uint2 alone = sample_codes(frame, sampler_of(frame, first + lane), dimension, j, n, steps, true);
-        out[first + lane] = (uint4)(codes.x[lane], codes.y[lane], alone);
+        out[first + lane] = (uint4)(codes.x[lane], codes.y[lane], alone.x, alone.y);
     }
 }
 )";
