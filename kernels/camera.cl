@@ -15,7 +15,7 @@
 
 // Offset from the pixel's centre with the filter's density, from its tabulated inverse cdf; the box is exact.
 inline float filter_offset(global const Frame* frame, global const float* tables, float u) {
-    if ((frame->seed.w & FRAME_TABLE_FILTER) == 0u) return u - 0.5f;
+    if (!frame_has(frame, FRAME_TABLE_FILTER)) return u - 0.5f;
     const float x = u * (float)FILTER_TABLE_SIZE;
     const uint i = min((uint)x, FILTER_TABLE_SIZE - 1u);
     global const float* offsets = tables + TABLE_FILTER;

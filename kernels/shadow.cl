@@ -46,7 +46,7 @@ inline void pass_panes(global const BvhNode* nodes, global const TriangleBlock* 
                     const Surface s = make_surface(triangle, hit.u, hit.v, direction);
                     const float3 base = base_color(triangle, material, texels, tables, hit.u, hit.v);
                     passed *= pane_transmittance(material, base, -dot(normalize(first_direction), s.n_geo));
-                    const float3 origin = s.position - s.offset * s.n_geo;
+                    const float3 origin = ray_origin(&s, -1.0f);
                     const float3 to_light = first_origin.xyz + first_direction - origin;
                     add_passing_ray(stream, passing, item, passed, origin,
                                     t_light == 1.0f ? to_light : direction, t_light);

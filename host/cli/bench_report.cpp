@@ -202,9 +202,8 @@ void print_tables(const SceneBench& bench, const Scene& scene, const DeviceInfo&
     fmt::print("The device's obscurance kernel also makes the directions and finds falloff and colours.\n");
     if (bench.has_panes)
         fmt::print(
-            "Shadow rays pass through panes on both sides; obscurance rays go on behind them on the device, "
-            "in "
-            "Embree they end there.\n");
+            "Shadow rays pass through panes on both sides; obscurance rays do on the device, Embree's "
+            "end.\n");
     for (const QueueBench* queue : queues) {
         if (queue->agrees()) continue;
         fmt::print("{}: the hits differ in more than {} of the rays: there is nothing to compare.\n",

@@ -63,11 +63,6 @@ RayQuery obscurance_query(const RenderSettings& settings) {
     return settings.falloff.kind == FalloffKind::step ? RayQuery::any : RayQuery::closest;
 }
 
-bool has_panes(RenderJob job) {
-    job.settings.needs = NeedsMode::automatic;
-    return analyse_needs(job.scene, job.settings).transmission;
-}
-
 // As many threads as the device has, if it runs on the same processor.
 int embree_threads(const DeviceInfo& device) {
     const uint32_t threads = device.is_cpu ? device.compute_units : std::thread::hardware_concurrency();
@@ -94,7 +89,7 @@ class Bench {
         }
         result_.queues[SHADOW].query = RayQuery::opaque;
         result_.queues[OBSCURANCE].query = obscurance_query(job.settings);
-        result_.has_panes = has_panes(job);
+        result_.has_panes = embree_.has_panes();
         result_.threads = embree_threads(device.info());
         result_.bvh_bytes = bvh_.bytes();
         result_.build_seconds = bvh_.build_seconds;

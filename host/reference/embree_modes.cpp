@@ -280,6 +280,10 @@ double EmbreeRunner::trace(const EmbreeMode& mode, RayQuery query, EmbreeRays& r
     return watch.seconds();
 }
 
+bool EmbreeRunner::has_panes() const {
+    return state_->robust_through_panes.has_value();
+}
+
 EmbreeCost EmbreeRunner::cost(bool robust) const {
     const EmbreeScene& scene = state_->scene(robust, RayQuery::closest);
     return {scene.bytes(), scene.build_seconds()};

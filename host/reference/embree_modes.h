@@ -85,6 +85,8 @@ class EmbreeRunner {
     // Traces all rays; seconds of wall time.
     double trace(const EmbreeMode& mode, RayQuery query, EmbreeRays& rays) const;
     EmbreeCost cost(bool robust) const;
+    // Through which RayQuery::opaque passes.
+    bool has_panes() const;
 
   private:
     struct State;
