@@ -201,27 +201,32 @@ def cells(row):
             f"{change(median)} ({change(low)} to {change(high)})", *(stage_cell(row, stage) for stage in STAGES)]
 
 
-def markdown(prices):
+def tables(prices):
+    """Of each table its title, a note, the head and the rows."""
     columns = ["compiling, s", "programs, KiB", "processor time, %", *(f"{stage}, ns" for stage in STAGES)]
+    return [
+        ("Everything (--needs all) beside what the scene needs", "", ["scene", *columns],
+         [[row["scene"], *cells(row)] for row in prices["all"]]),
+        ("One feature beside the same kernels without it",
+         "Where it is needed, beside the others that the scene needs and with its work; else beside all others and without work.",
+         ["feature", "needed", "scene", *columns],
+         [[row["feature"], "yes" if row["needed"] else "no", row["scene"], *cells(row)] for row in prices["flags"]]),
+        (f"Obscurances of the {LARGE} beside ambient occlusion (the step without bleeding), which takes any hit", "",
+         ["obscurances", *columns], [[row["obscurances"], *cells(row)] for row in prices["obscurances"]])]
 
-    def table(names, rows):
-        head = [*names, *columns]
-        return ["| " + " | ".join(line) + " |" for line in [head, ["---"] * len(head), *rows]]
 
-    lines = ["## What features cost", "",
-             f"`tools/report needs --repeats {prices['repeats']}` on {prices['device']}: pairs of renders with `{' '.join(PICTURE)}`. "
-             "Compiling: processor time added when all kernels are cold. Programs: their added size. Processor time: what is added to "
-             "that of a whole render with compiled kernels, the median of the pairs and the interval in which it lies with 95 % "
-             "confidence. Stages: the shortest time per item without and with it.", "",
-             "### Everything (`--needs all`) beside what the scene needs", "",
-             *table(["scene"], [[row["scene"], *cells(row)] for row in prices["all"]]), "",
-             "### One feature beside the same kernels without it", "",
-             "Where it is needed, beside the others that the scene needs and with its work; else beside all others and without "
-             "work.", "",
-             *table(["feature", "needed", "scene"], [[row["feature"], "yes" if row["needed"] else "no", row["scene"], *cells(row)]
-                                                     for row in prices["flags"]]), "",
-             f"### Obscurances of the {LARGE} beside ambient occlusion (the step without bleeding), which takes any hit", "",
-             *table(["obscurances"], [[row["obscurances"], *cells(row)] for row in prices["obscurances"]])]
+def description(prices):
+    return (f"tools/report needs --repeats {prices['repeats']} on {prices['device']}: pairs of renders with {' '.join(PICTURE)}. "
+            "Compiling: processor time added when all kernels are cold. Programs: their added size. Processor time: what is added to "
+            "that of a whole render with compiled kernels, the median of the pairs and the interval in which it lies with 95 % "
+            "confidence. Stages: the shortest time per item without and with it.")
+
+
+def markdown(prices):
+    lines = ["## What features cost", "", description(prices)]
+    for title, note, head, rows in tables(prices):
+        lines += ["", f"### {title}", "", *([note, ""] if note else []),
+                  *("| " + " | ".join(line) + " |" for line in [head, ["---"] * len(head), *rows])]
     return "\n".join(lines) + "\n"
 
 

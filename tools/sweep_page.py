@@ -2,8 +2,10 @@
 """One self-contained page of what `obscura sweep` measured: plots as inline SVG, crops as inline PNG, tables."""
 
 import base64
+import csv
 import html
 import io
+import json
 
 import matplotlib
 
@@ -12,6 +14,9 @@ import matplotlib.image
 import matplotlib.pyplot as plt
 import numpy as np
 
+import price_needs
+import sweep_flip
+
 plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "obscura", "font.size": 9, "axes.grid": True,
                      "axes.grid.which": "both", "grid.alpha": 0.25, "legend.fontsize": 8})
 
@@ -19,6 +24,7 @@ SAMPLERS = ["lattice", "owen", "random", "k10", "k2", "k1"]
 MODELS = ["none", "constant", "ao", "colourless", "obscurance", "path"]
 COLORS = dict(zip(SAMPLERS + MODELS, plt.get_cmap("tab20").colors[::2][:6] + plt.get_cmap("Dark2").colors[:5] + ("black",)))
 CROPPED = ["none", "constant", "ao", "obscurance", "path", "random", "lattice"]
+BUILDS = ["needs-all", "portable"]
 PAPER_BUDGET = 40  # 8 samples with 5 obscurance rays
 
 STYLE = """body{font:15px/1.45 system-ui,sans-serif;max-width:1100px;margin:2em auto;padding:0 1em;color:#222;background:#fff}
@@ -87,13 +93,17 @@ def plot_curves(sweep, names, layer, title, error=absolute):
     return figure
 
 
+def draw_floors(axes, sweep):
+    for name, found in sweep.get("overtaking", {}).items():
+        if name in MODELS and found["floor"]:
+            axes.axhline(found["floor"], color=COLORS[name], linestyle=":", linewidth=1)
+
+
 def plot_models(sweep):
     figure = plot_curves(sweep, MODELS, "diffuse", "Models against path-traced light; dotted: what is left with any number of samples",
                          relative)
     for place in figure.axes:
-        for name, found in sweep.get("overtaking", {}).items():
-            if name in MODELS and found["floor"]:
-                place.axhline(found["floor"], color=COLORS[name], linestyle=":", linewidth=1)
+        draw_floors(place, sweep)
     return figure
 
 
@@ -116,6 +126,21 @@ def svg(figure):
     figure.savefig(text, format="svg", metadata={"Date": None})
     plt.close(figure)
     return text.getvalue()[text.getvalue().index("<svg"):]
+
+
+def plot_flip(sweep, flip):
+    """What a person sees of the error, against time: samplers beside their model, models beside path tracing."""
+    figure, axes = plt.subplots(1, 2, figsize=(11, 4.2), sharey=True, layout="constrained")
+    for place, names, reference in zip(axes, (SAMPLERS, MODELS), ("their own model", "path-traced light")):
+        for name in names:
+            points = [(row["seconds"], flip[name][row["budget"]]) for row in sweep["methods"].get(name, []) if row["budget"] in flip[name]]
+            if points:
+                place.plot(*zip(*points), label=name, color=COLORS[name], marker="o", markersize=3, linewidth=1.2)
+        place.set(xscale="log", yscale="log", xlabel="seconds of rendering", title=f"beside {reference}")
+        if place.lines:
+            place.legend()
+    axes[0].set_ylabel("mean FLIP")
+    return figure
 
 
 # --- Crops of equal time -------------------------------------------------------------------------------------------
@@ -172,13 +197,52 @@ def overtaking_table(sweep):
                   for name, found in sweep.get("overtaking", {}).items()])
 
 
-def needs_table(sweep):
-    """Seconds with every feature compiled in over those with what the scene needs, budget by budget."""
-    pruned = {row["budget"]: row for row in sweep["methods"].get("lattice", [])}
-    rows = [(row, pruned[row["budget"]]) for row in sweep["methods"].get("needs-all", []) if row["budget"] in pruned]
-    return table(["budget", "needs auto, s", "needs all, s", "all over auto"],
-                 [[row["budget"], number(other["seconds"]), number(row["seconds"]),
-                   number(row["seconds"] / other["seconds"], "{:.2f}")] for row, other in rows])
+def builds_table(sweep):
+    """The same pictures from kernels that were compiled otherwise: seconds over those of the kernels that a render has."""
+    own = {row["budget"]: row for row in sweep["methods"].get("lattice", [])}
+    builds = [(name, row, own[row["budget"]]) for name in BUILDS for row in sweep["methods"].get(name, []) if row["budget"] in own]
+    return table(["kernels", "budget", "seconds", "of a render's own", "ratio", "RMSE over theirs"],
+                 [[name, row["budget"], number(row["seconds"]), number(render["seconds"]),
+                   number(row["seconds"] / render["seconds"], "{:.2f}"), number(row["rmse"] / render["rmse"], "{:.6f}")]
+                  for name, row, render in builds])
+
+
+def feature_tables(folder):
+    """What tools/report needs wrote into the sweep's folder."""
+    path = folder / "needs.json"
+    if not path.exists():
+        return ""
+    prices = json.loads(path.read_text(encoding="utf-8"))
+    parts = [f"<details><summary>{html.escape(title)}</summary><p>{html.escape(note)}</p>{table(head, rows)}</details>"
+             for title, note, head, rows in price_needs.tables(prices)]
+    return "\n".join([f"<h2>What features cost</h2><p>{html.escape(price_needs.description(prices))}</p>", *parts])
+
+
+def remedy_table(folder):
+    """What tools/price-remedies wrote into the sweep's folder."""
+    path = folder / "remedies.csv"
+    if not path.exists():
+        return ""
+    with open(path, encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    return ("<h2>What remedies against rounding cost</h2><p>The kernels beside kernels that lack one remedy, by "
+            f"<code>tools/price-remedies</code>.</p>{table(head, rows)}")
+
+
+def flip_table(sweep, flip):
+    budgets = sorted({budget for found in flip.values() for budget in found})
+    return table(["method", "beside the reference", *(f"{budget} rays per pixel" for budget in budgets)],
+                 [[name, sweep["measured_against"][name], *(number(found.get(budget), "{:.4f}") for budget in budgets)]
+                  for name, found in flip.items()])
+
+
+def perceived(folder, sweep):
+    flip = sweep_flip.measure(folder, sweep)
+    if flip is None:
+        return (f"<p>Not measured: the Python package flip_evaluator is not installed (<code>{sweep_flip.HOW_TO_INSTALL}</code>).</p>")
+    return (f"<p>FLIP (Andersson et al. 2020) of the 8-bit pictures of the first seed, {sweep_flip.PIXELS_PER_DEGREE} pixels per degree "
+            f"of the visual field; 0: a person sees no difference.</p>{svg(plot_flip(sweep, flip))}"
+            f"<details><summary>All of them</summary>{flip_table(sweep, flip)}</details>")
 
 
 def method_tables(sweep):
@@ -232,7 +296,8 @@ def page(folder, sweep, window):
         "<p>Path tracing here is that of <code>obscura reference</code>: double precision, on the host. Seconds compare the two "
         "programs, rays the methods. Crossings beyond the measured budgets follow power laws.</p>",
         "<h2>Equal time</h2>", crops(folder, sweep, window),
-        "<h2>Needs</h2>", needs_table(sweep), "<h2>All figures</h2>", method_tables(sweep),
+        "<h2>Perceived difference</h2>", perceived(folder, sweep),
+        "<h2>Kernels compiled otherwise</h2>", builds_table(sweep), feature_tables(folder), remedy_table(folder), "<h2>All figures</h2>", method_tables(sweep),
         "<h2>Machine and settings</h2>", machine_table(sweep)]
     body = "\n".join(part for part in parts if part)
     return (f"<!DOCTYPE html><html lang=en><meta charset=utf-8><title>obscura sweep: {html.escape(sweep['scene'])}</title>"
@@ -244,12 +309,13 @@ def main_plot(sweep, path):
     figure, axes = plt.subplots(1, 2, figsize=(11, 4.4), layout="constrained")
     for place, names, layer, abscissa, error, label, title in (
             (axes[0], SAMPLERS, "obscurance", "rays", absolute, "rays of a picture", "Noise of the obscurances, by sample points"),
-            (axes[1], MODELS, "diffuse", "seconds", relative, "seconds of rendering", "Error of all diffuse light, by model")):
+            (axes[1], MODELS, "diffuse", "seconds", relative, "seconds of rendering", "Error of all diffuse light, by model; dotted: what any time leaves")):
         for name in names:
             if name in sweep["methods"]:
                 plot_method(place, sweep, name, layer, abscissa, error)
         place.set(xscale="log", yscale="log", xlabel=label, ylabel=f"{'relative ' if error is relative else ''}RMSE of {layer}")
         place.set_title(title, loc="left")
         place.legend()
+    draw_floors(axes[1], sweep)
     figure.savefig(path, dpi=100, metadata={"Software": None})
     plt.close(figure)

@@ -143,11 +143,16 @@ void develop_band(const FilmSums& film, std::span<const std::string> wanted, Ima
     };
     append(image.layers[0], 0, [&](size_t place) { return developer.beauty(place); });
     for (size_t i = 0; i < wanted.size(); ++i) {
-        append(image.layers[i + 1], first_component(wanted[i]), [&](size_t place) {
-            return wanted[i] == "Variance"           ? developer.variance(place)
-                   : wanted[i] == "RelativeVariance" ? developer.relative_variance(place)
-                                                     : developer.mean(layer_info(wanted[i]).layer, place);
-        });
+        const std::string& name = wanted[i];
+        Layer& layer = image.layers[i + 1];
+        if (name == "Variance") {
+            append(layer, 0, [&](size_t place) { return developer.variance(place); });
+        } else if (name == "RelativeVariance") {
+            append(layer, 0, [&](size_t place) { return developer.relative_variance(place); });
+        } else {
+            const uint32_t kept = layer_info(name).layer;
+            append(layer, first_component(name), [&](size_t place) { return developer.mean(kept, place); });
+        }
     }
 }
 

@@ -71,6 +71,7 @@ std::optional<SweepRenderer::Picture> SweepRenderer::render(const SweepTask& tas
     RenderJob job = base_;
     job.settings = settings;
     job.bvh = &bvh_;
+    job.portable = base_.portable || task.method.portable;
     job.layers.assign(DIFFUSE_PARTS.begin(), DIFFUSE_PARTS.end());
     if (task.method.reference == IntegratorKind::obscurance) job.layers.emplace_back("obscurance");
     RenderResult result =

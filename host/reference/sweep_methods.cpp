@@ -24,6 +24,14 @@ class MethodList {
     void add_sampling(const std::string& name, const std::string& meaning, const Change& change) {
         add({name, meaning, IntegratorKind::obscurance, base_}, change);
     }
+    // The same pictures from kernels that were compiled otherwise.
+    void add_builds() {
+        add_sampling("needs-all", "lattice with every feature compiled in",
+                     [](RenderSettings& settings) { settings.needs = NeedsMode::all; });
+        add_sampling("portable", "lattice with kernels that use no instructions of one processor",
+                     [](RenderSettings&) {});
+        methods_.back().portable = true;
+    }
     // Measured against all light.
     template <typename Change>
     void add_model(const std::string& name, const std::string& meaning, const Change& change) {
@@ -112,8 +120,7 @@ std::vector<SweepMethod> sweep_methods(const RenderSettings& base) {
     MethodList list(base);
     add_samplers(list);
     add_splits(list);
-    list.add_sampling("needs-all", "lattice with every feature compiled in",
-                      [](RenderSettings& settings) { settings.needs = NeedsMode::all; });
+    list.add_builds();
     add_models(list, base);
     list.add_path_tracing();
     return list.take();

@@ -23,6 +23,7 @@ struct SweepMethod {
     reference::IntegratorKind reference = reference::IntegratorKind::obscurance;
     RenderSettings settings;   // all but samples per pixel, size and seed
     bool path_traced = false;  // by the reference's path tracer, on the host
+    bool portable = false;     // kernels without instructions of one processor
 
     // A budget's rays over its samples per pixel.
     uint32_t rays_per_sample() const;

@@ -4,6 +4,7 @@
 # tools/report sweep makes a page of plots, pictures and tables that needs nothing else.
 import csv
 import json
+import os
 import pathlib
 import subprocess
 import tempfile
@@ -108,20 +109,39 @@ def sweep_results():
             "variance_ratio_to_random": {"lattice": [{"budget": 5, "layer": "obscurance", "ratio": 7.89}]}}
 
 
+BLACK_PNG = bytes.fromhex("89504e470d0a1a0a0000000d4948445200000001000000010802000000907753de0000000c49444154789c63"
+                          "6060600000000400017689b2a60000000049454e44ae426082")
+# The package's interface: reference, picture, range, is it sRGB, colour map, mean, settings.
+FLIP_STAND_IN = """
+def evaluate(reference, picture, kind, srgb, magma, mean, settings):
+    assert (kind, srgb, magma, mean, settings) == ("LDR", True, False, True, {"ppd": 67}), "other settings"
+    assert reference.shape == picture.shape == (1, 1, 3) and reference.dtype == picture.dtype == "float32"
+    return None, 0.1234, settings
+"""
+PRICE = {"compile_cpu_seconds": 1.5, "bytes": 2048, "ns": {"shade": 321}}
+NEEDS = {"repeats": 9, "device": "a device", "obscurances": [], "flags": [],
+         "all": [{"scene": "furnace", "base": PRICE, "other": PRICE, "cpu_ratio": [1.1, 1.05, 1.15]}]}
+
+
 class SweepPage(unittest.TestCase):
-    def report(self, document, *options):
-        """Exit code, what was said, and the page if there is one."""
+    def report(self, document, *options, beside=None, modules=None):
+        """Exit code, what was said, and the page if there is one. beside: other files of the folder, modules: Python's, by name."""
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             (folder / "pictures").mkdir()
-            black_png = bytes.fromhex("89504e470d0a1a0a0000000d4948445200000001000000010802000000907753de0000000c49444154789c63"
-                                      "6060600000000400017689b2a60000000049454e44ae426082")
-            (folder / "pictures/reference-path.png").write_bytes(black_png)
+            for picture in ("reference-path", "ao-5"):
+                (folder / f"pictures/{picture}.png").write_bytes(BLACK_PNG)
+            # A module of this name that can't be imported stands for a package that isn't there.
+            missing = 'raise ModuleNotFoundError("No module named flip_evaluator")'
+            for file, text in {"modules/flip_evaluator.py": missing, **(modules or {}), **(beside or {})}.items():
+                (folder / file).parent.mkdir(exist_ok=True)
+                (folder / file).write_text(text)
             if document is not None:
                 (folder / "sweep.json").write_text(json.dumps(document))
                 (folder / "sweep.csv").write_text("method")
             done = subprocess.run([ROOT / "tools/report", "sweep", folder, "--out", folder / "out", *options],
-                                  capture_output=True, text=True, check=False)
+                                  capture_output=True, text=True, check=False,
+                                  env={**os.environ, "PYTHONPATH": str(folder / "modules")})
             written = {path.name: path.read_bytes() for path in (folder / "out").glob("*")}
             return done.returncode, done.stderr, written
 
@@ -137,6 +157,27 @@ class SweepPage(unittest.TestCase):
         self.assertNotIn("src=\"http", page)
         self.assertNotIn("href=\"http", page)
         self.assertTrue(written["sweep.png"].startswith(b"\x89PNG"))
+
+    def test_page_without_the_package_of_flip_tells_how_to_get_it(self):
+        page = self.report(sweep_results())[2]["sweep.html"].decode()
+        self.assertIn("pip install flip-evaluator", page)
+
+    def test_page_holds_flip_of_pictures_beside_their_reference(self):
+        code, said, written = self.report(sweep_results(), modules={"modules/flip_evaluator.py": FLIP_STAND_IN})
+        self.assertEqual((0, ""), (code, said))
+        page = written["sweep.html"].decode()
+        self.assertEqual(5, page.count("<svg"))
+        self.assertIn("<td>ao</td><td>path</td><td>0.1234</td>", page)  # the one budget whose picture is there
+        self.assertNotIn("flip-evaluator", page)
+
+    def test_page_holds_prices_of_features_and_remedies(self):
+        remedies = "remedy,stage,added\nexact differences,obscurance,+3.5\n"
+        code, said, written = self.report(sweep_results(), beside={"needs.json": json.dumps(NEEDS), "remedies.csv": remedies})
+        self.assertEqual((0, ""), (code, said))
+        page = written["sweep.html"].decode()
+        for text in ("<td>furnace</td><td>+0.0</td><td>+0</td><td>+10.0 (+5.0 to +15.0)</td><td>321 to 321</td>",
+                     "<td>exact differences</td><td>obscurance</td><td>+3.5</td>"):
+            self.assertIn(text, page)
 
     def test_unfinished_sweep_says_so(self):
         page = self.report({**sweep_results(), "complete": False})[2]["sweep.html"].decode()
