@@ -93,7 +93,7 @@ SHARE_FUNCTION result_share(global const Frame* frame, global const BvhNode* nod
             bool overflow = false;
             const float4 result = trace_obscurance(frame, nodes, blocks, triangles, materials, texels, tables,
                                                    rays[2u * i].xyz - start, start, stream.direction[ray].xyz,
-                                                   stream.origin[ray].w, hit, rho[ray], &overflow);
+                                                   hit, rho[ray], &overflow);
             out[i] = hit_lane(hit);
             out[count + i] = (float4)(stream.origin[ray].w, 0.0f, 0.0f, 0.0f);
             out[2u * count + i] = overflow ? (float4)(NAN) : result;

@@ -31,8 +31,7 @@ SHARE_FUNCTION trace_points(global const Frame* frame, global const BvhNode* nod
             results[owners.result[ray]] =
                 trace_obscurance(frame, nodes, blocks, triangles, materials, texels, tables,
                                  points[POINT_POSITION * frame->crop.w + i].xyz, ray_start(frame, points, i),
-                                 stream.direction[ray].xyz, stream.origin[ray].w, stream_hit(&stream, ray),
-                                 rho[ray], &overflow);
+                                 stream.direction[ray].xyz, stream_hit(&stream, ray), rho[ray], &overflow);
             if (overflow) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_OBSCURANCE, i);
         }
     }

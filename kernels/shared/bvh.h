@@ -18,11 +18,12 @@
 #define BVH_EMPTY_CHILD 0xffffffffu  // also marked by bounds that no ray hits (lower = +inf, upper = -inf)
 
 #define NO_PRIMITIVE 0xffffffffu  // an empty slot of a block; also the hit record of a miss
-// Set in a block beside a triangle's index where light passes through it: shadow rays don't end there.
+// Set beside a triangle's index, in a block and in what any-hit traversal finds, where light passes through it: shadow rays
+// don't end there.
 #define PRIMITIVE_PANE 0x80000000u
 
-// What the kernel trace_rays (check.cl) is asked for: the nearest hit, whether anything is hit, or the nearest hit of each ray
-// alone, as behind panes.
+// What the kernel trace_rays (check.cl) is asked for: the nearest hit, what any-hit traversal finds, or the nearest hit of each
+// ray alone, as behind panes.
 #define RAY_QUERY_NEAREST 0u
 #define RAY_QUERY_ANY 1u
 #define RAY_QUERY_ALONE 2u

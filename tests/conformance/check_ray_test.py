@@ -151,7 +151,7 @@ class CheckRay(unittest.TestCase):
         self.expect_refusal("check", "--self-test", "--case", "soup, edges", "--ray", f"{ray},0,0.001,0", names="ten numbers")
 
     def test_wrong_any_hit_is_the_same_again(self):
-        environment = self.planted("lib/stream_state.clh", "stream->hit[ray] = hit;", "if (!any_hit) stream->hit[ray] = hit;")
+        environment = self.planted("lib/stream_leaf.clh", "stream->hit[ray] = hit_lane(hit);", "if (!any_hit) stream->hit[ray] = hit_lane(hit);")
         _, device, _, line = self.wrong_rays("--self-test", "--case", "triangle soup", **environment)[0]
         self.assertEqual("free", device)
         again = self.run_command("check", "--self-test", *line, **environment)

@@ -33,7 +33,8 @@ kernel void probe(global const BvhNode* nodes, global const TriangleBlock* block
     Hit nearest;
     nearest.t = INFINITY;
     nearest.primitive = 0u;
-    for (uint block = 0u; block < block_count; ++block) intersect_block(blocks + block, &shear, &nearest, false);
+    for (uint block = 0u; block < block_count; ++block)
+        intersect_block(blocks + block, &shear, &nearest, INFINITY, false);
     if (nearest.t == INFINITY) nearest.primitive = NO_PRIMITIVE;
     differs[i] = found.primitive != nearest.primitive || found.t != nearest.t ? 1u : 0u;
 })";
