@@ -138,7 +138,8 @@ ProgramLibrary::Source ProgramLibrary::make_source(const std::string& stage, con
     if (device_.has_correctly_rounded_division()) all += " -cl-fp32-correctly-rounded-divide-sqrt";
     if (!options.empty()) all += " " + options;
     const DeviceInfo& info = device_.info();
-    if (!device_.runs_items_in_turn()) all += " -D OBSCURA_PORTABLE";
+    all += device_.runs_items_in_turn() ? fmt::format(" -D COMPUTE_UNITS={}", info.compute_units)
+                                        : " -D OBSCURA_PORTABLE";
     const std::string key = hash_text(fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", info.platform,
                                                   info.platform_version, info.name, info.driver_version,
                                                   info.opencl_version, kernel, local_size_, all, text));
