@@ -16,10 +16,13 @@ namespace {
 void trace_queues(const Device& device, int64_t time_ns, const Work& work, const DeviceStatus& status) {
     const CommandLog* const commands = device.commands();
     if (commands == nullptr) return;
-    commands->set_queue_length("camera rays", time_ns, work.depth == 0 ? work.count : 0);
-    commands->set_queue_length("glossy rays", time_ns, work.depth == 0 ? 0 : work.count);
-    commands->set_queue_length("shadow rays", time_ns, status[COUNT_SHADOWS]);
-    commands->set_queue_length("obscurance points", time_ns, status[COUNT_POINTS]);
+    const auto set = [&](std::string_view queue, std::string_view what, uint64_t length) {
+        commands->set_queue_length(time_ns, queue, {what, length});
+    };
+    set("camera", "rays", work.depth == 0 ? work.count : 0);
+    set("glossy", "rays", work.depth == 0 ? 0 : work.count);
+    set("shadow", "rays", status[COUNT_SHADOWS]);
+    set("obscurance", "points", status[COUNT_POINTS]);
 }
 
 }  // namespace
@@ -62,15 +65,15 @@ uint64_t Scheduler::render(const Frame& frame, const WaveCallback& after_wave) {
     for (uint64_t index = 0;; ++index) {
         const Wave wave = wave_at(index, frame.crop.w, pixels, frame.sampling.x);
         if (wave.count == 0) break;
-        run_wave(frame, wave);
+        run_wave(frame, wave, index);
         done += wave.count;
         if (!after_wave(done, rays_)) break;
     }
     return done;
 }
 
-void Scheduler::run_wave(const Frame& frame, const Wave& wave) {
-    const TraceStep step(device_.trace(), TraceCategory::host, "wave");
+void Scheduler::run_wave(const Frame& frame, const Wave& wave, uint64_t index) {
+    const TraceStep step(device_.trace(), TraceCategory::host, "wave", {"number", index});
     const Work samples{.first_pixel = wave.first_pixel,
                        .first_pass = wave.first_pass,
                        .count = wave.count,
