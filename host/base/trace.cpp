@@ -102,10 +102,9 @@ void TraceRecord::add_command(uint32_t device, TraceCategory category, std::stri
         {{FIRST_DEVICE_PROCESS + device, FIRST_THREAD}, category, detail, std::move(name), start_ns, end_ns});
 }
 
-void TraceRecord::add_queue_length(uint32_t device, int64_t time_ns, std::string_view queue,
-                                   TraceDetail length) {
+void TraceRecord::add_queue_length(uint32_t device, std::string_view queue, int64_t time_ns, uint64_t items) {
     const std::lock_guard lock(mutex_);
-    lengths_.push_back({FIRST_DEVICE_PROCESS + device, time_ns, queue, length});
+    lengths_.push_back({FIRST_DEVICE_PROCESS + device, queue, time_ns, items});
 }
 
 void TraceRecord::add_step(TraceCategory category, std::string name, int64_t start_ns, int64_t end_ns,
@@ -136,9 +135,10 @@ void TraceRecord::write(const std::filesystem::path& path) const {
                 arguments(slice.detail)));
         }
         for (const QueueLength& length : lengths_) {
-            events.add(fmt::format(R"({{"ph":"C","name":{},"pid":{},"ts":{},"args":{}}})",
+            // Perfetto calls the counter "shadow rays queued", chrome://tracing "shadow rays".
+            events.add(fmt::format(R"({{"ph":"C","name":{},"pid":{},"ts":{},"args":{{"queued":{}}}}})",
                                    json_text(length.queue), length.process, microseconds(length.time_ns),
-                                   arguments(length.length)));
+                                   length.items));
         }
         events.end();
         file.close();

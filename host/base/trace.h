@@ -36,8 +36,8 @@ class TraceRecord {
     uint32_t add_device(const std::string& name);
     void add_command(uint32_t device, TraceCategory category, std::string name, int64_t start_ns,
                      int64_t end_ns, TraceDetail detail);
-    // From this moment on the queue has this length: "shadow", {"rays", 17u}. Viewers name the counter after both.
-    void add_queue_length(uint32_t device, int64_t time_ns, std::string_view queue, TraceDetail length);
+    // From this moment on the queue of items has this length.
+    void add_queue_length(uint32_t device, std::string_view queue, int64_t time_ns, uint64_t items);
     // In the calling thread's row.
     void add_step(TraceCategory category, std::string name, int64_t start_ns, int64_t end_ns,
                   TraceDetail detail);
@@ -59,9 +59,9 @@ class TraceRecord {
     };
     struct QueueLength {
         uint32_t process;
-        int64_t time_ns;
         std::string_view queue;
-        TraceDetail length;
+        int64_t time_ns;
+        uint64_t items;
     };
 
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

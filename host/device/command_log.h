@@ -25,9 +25,9 @@ class CommandLog {
 
     TraceRecord& trace() const { return trace_; }
 
-    // From this moment on the device's queue has this length. queue: a literal.
-    void set_queue_length(int64_t time_ns, std::string_view queue, TraceDetail length) const {
-        trace_.add_queue_length(device_, time_ns, queue, length);
+    // From this moment on the device's queue of items has this length. queue: a literal.
+    void set_queue_length(std::string_view queue, int64_t time_ns, uint64_t items) const {
+        trace_.add_queue_length(device_, queue, time_ns, items);
     }
 
     void add(TraceCategory category, std::string name, TraceDetail detail, const cl::Event& event);

@@ -16,13 +16,10 @@ namespace {
 void trace_queues(const Device& device, int64_t time_ns, const Work& work, const DeviceStatus& status) {
     const CommandLog* const commands = device.commands();
     if (commands == nullptr) return;
-    const auto set = [&](std::string_view queue, std::string_view what, uint64_t length) {
-        commands->set_queue_length(time_ns, queue, {what, length});
-    };
-    set("camera", "rays", work.depth == 0 ? work.count : 0);
-    set("glossy", "rays", work.depth == 0 ? 0 : work.count);
-    set("shadow", "rays", status[COUNT_SHADOWS]);
-    set("obscurance", "points", status[COUNT_POINTS]);
+    commands->set_queue_length("camera rays", time_ns, work.depth == 0 ? work.count : 0);
+    commands->set_queue_length("glossy rays", time_ns, work.depth == 0 ? 0 : work.count);
+    commands->set_queue_length("shadow rays", time_ns, status[COUNT_SHADOWS]);
+    commands->set_queue_length("obscurance points", time_ns, status[COUNT_POINTS]);
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ class Trace(unittest.TestCase):
         for event in self.events:
             if event["ph"] == "C":
                 self.assertEqual(DEVICE, event["pid"])
-                lengths.update({f"{event['name']} {what}": length for what, length in event["args"].items()})
+                lengths[event["name"]] += event["args"]["queued"]
         rays = self.stats["rays"]
         self.assertEqual({"camera rays": rays["camera"], "shadow rays": rays["shadow"], "glossy rays": rays["glossy"],
                           "obscurance points": rays["obscurance"] // self.stats["obscurance_rays"]}, lengths)

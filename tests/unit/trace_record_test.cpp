@@ -93,9 +93,10 @@ TEST_F(Trace, StepWithoutATraceIsNone) {
 
 TEST_F(Trace, QueueLengthIsACounter) {
     const uint32_t device = trace.add_device("PoCL");
-    trace.add_queue_length(device, 2000, "shadow", {"rays", 17u});
-    EXPECT_EQ(events("C"), std::vector<Json>{Json::parse(
-                               R"({"ph": "C", "name": "shadow", "pid": 2, "ts": 2, "args": {"rays": 17}})")});
+    trace.add_queue_length(device, "shadow rays", 2000, 17);
+    EXPECT_EQ(events("C"),
+              std::vector<Json>{Json::parse(
+                  R"({"ph": "C", "name": "shadow rays", "pid": 2, "ts": 2, "args": {"queued": 17}})")});
 }
 
 TEST_F(Trace, NamesWithQuotesAndForeignBytesStayValid) {
