@@ -12,8 +12,10 @@
 namespace obscura {
 namespace {
 
-constexpr uint32_t HOST_PROCESS = 0;
-constexpr uint32_t FIRST_DEVICE_PROCESS = 1;
+// From 1 on: viewers take process 0 and thread 0 for the idle task's.
+constexpr uint32_t HOST_PROCESS = 1;
+constexpr uint32_t FIRST_DEVICE_PROCESS = 2;
+constexpr uint32_t FIRST_THREAD = 1;
 
 const char* category_name(TraceCategory category) {
     switch (category) {
@@ -79,7 +81,7 @@ class EventWriter {
 }  // namespace
 
 TraceRecord::TraceRecord() {
-    threads_.emplace(std::this_thread::get_id(), 0);
+    threads_.emplace(std::this_thread::get_id(), FIRST_THREAD);
 }
 
 int64_t TraceRecord::now_ns() const {
@@ -97,7 +99,7 @@ void TraceRecord::add_command(uint32_t device, TraceCategory category, std::stri
                               int64_t end_ns, TraceDetail detail) {
     const std::lock_guard lock(mutex_);
     slices_.push_back(
-        {{FIRST_DEVICE_PROCESS + device, 0}, category, detail, std::move(name), start_ns, end_ns});
+        {{FIRST_DEVICE_PROCESS + device, FIRST_THREAD}, category, detail, std::move(name), start_ns, end_ns});
 }
 
 void TraceRecord::add_queue_length(uint32_t device, std::string_view queue, int64_t time_ns, uint64_t items) {
@@ -108,7 +110,7 @@ void TraceRecord::add_queue_length(uint32_t device, std::string_view queue, int6
 void TraceRecord::add_step(TraceCategory category, std::string name, int64_t start_ns, int64_t end_ns,
                            TraceDetail detail) {
     const std::lock_guard lock(mutex_);
-    const auto next = static_cast<uint32_t>(threads_.size());
+    const uint32_t next = FIRST_THREAD + static_cast<uint32_t>(threads_.size());
     const uint32_t thread = threads_.emplace(std::this_thread::get_id(), next).first->second;
     slices_.push_back({{HOST_PROCESS, thread}, category, detail, std::move(name), start_ns, end_ns});
 }
@@ -120,10 +122,10 @@ void TraceRecord::write(const std::filesystem::path& path) const {
         EventWriter events(file);
         events.name_process(HOST_PROCESS, "host");
         for (const auto& [id, thread] : threads_)
-            events.name_thread(HOST_PROCESS, thread, thread == 0 ? "main" : fmt::format("worker {}", thread));
+            events.name_thread(HOST_PROCESS, thread, thread == FIRST_THREAD ? "main" : "worker");
         for (uint32_t i = 0; i < devices_.size(); ++i) {
             events.name_process(FIRST_DEVICE_PROCESS + i, devices_[i]);
-            events.name_thread(FIRST_DEVICE_PROCESS + i, 0, "command queue");
+            events.name_thread(FIRST_DEVICE_PROCESS + i, FIRST_THREAD, "command queue");
         }
         for (const Slice& slice : slices_) {
             events.add(fmt::format(
@@ -133,7 +135,8 @@ void TraceRecord::write(const std::filesystem::path& path) const {
                 arguments(slice.detail)));
         }
         for (const QueueLength& length : lengths_) {
-            events.add(fmt::format(R"({{"ph":"C","name":{},"pid":{},"ts":{},"args":{{"items":{}}}}})",
+            // Perfetto calls the counter "shadow rays queued", chrome://tracing "shadow rays".
+            events.add(fmt::format(R"({{"ph":"C","name":{},"pid":{},"ts":{},"args":{{"queued":{}}}}})",
                                    json_text(length.queue), length.process, microseconds(length.time_ns),
                                    length.items));
         }

@@ -46,7 +46,7 @@ class TraceRecord {
     void write(const std::filesystem::path& path) const;
 
   private:
-    // As the format numbers rows. Process 0 is the host with its threads, each device a process with thread 0.
+    // As the format numbers rows. The host is a process with its threads, each device a process with one thread.
     struct Row {
         uint32_t process, thread;
     };

@@ -49,7 +49,8 @@ cl::Event launch(const Launch& run, std::span<const LaunchArgument> arguments) {
           "clEnqueueNDRangeKernel", run.stage, run.device.name(), run.item_count);
     cl::Event launched(event);  // takes over the reference that the call gave
     if (CommandLog* const commands = run.device.commands())
-        commands->add(TraceCategory::kernel, std::string(run.stage), {"items", run.item_count}, launched);
+        commands->add(TraceCategory::kernel, std::string(run.stage), {"work items", uint64_t{global}},
+                      launched);
     return launched;
 }
 

@@ -153,7 +153,8 @@ bool ProgramLibrary::load(const Source& source) {
     if (programs_.contains(source.key)) return true;
     const auto binary = cache_.load(source.key);
     if (!binary) return false;
-    const TraceStep step(device_.trace(), TraceCategory::compile, source.stage, {"cache", "hit"});
+    const TraceStep step(device_.trace(), TraceCategory::compile, "compile " + source.stage,
+                         {"cache", "hit"});
     std::vector<cl_int> status;
     cl_int code = CL_SUCCESS;
     cl::Program program(device_.context(), {device_.handle()}, {*binary}, &status, &code);
@@ -169,7 +170,8 @@ bool ProgramLibrary::load(const Source& source) {
 // Returns the binary to keep, empty if the device has none to give.
 std::vector<unsigned char> ProgramLibrary::compile(const Source& source) {
     const Stopwatch stopwatch(compile_seconds_);
-    const TraceStep step(device_.trace(), TraceCategory::compile, source.stage, {"cache", "miss"});
+    const TraceStep step(device_.trace(), TraceCategory::compile, "compile " + source.stage,
+                         {"cache", "miss"});
     const cl::Program program = build_from_text(source);
     if (device_.compiles_at_launch())
         warm_up(device_, make_kernel(program, source), source.stage, local_size_);

@@ -62,15 +62,15 @@ uint64_t Scheduler::render(const Frame& frame, const WaveCallback& after_wave) {
     for (uint64_t index = 0;; ++index) {
         const Wave wave = wave_at(index, frame.crop.w, pixels, frame.sampling.x);
         if (wave.count == 0) break;
-        run_wave(frame, wave);
+        run_wave(frame, wave, index);
         done += wave.count;
         if (!after_wave(done, rays_)) break;
     }
     return done;
 }
 
-void Scheduler::run_wave(const Frame& frame, const Wave& wave) {
-    const TraceStep step(device_.trace(), TraceCategory::host, "wave");
+void Scheduler::run_wave(const Frame& frame, const Wave& wave, uint64_t index) {
+    const TraceStep step(device_.trace(), TraceCategory::host, "wave", {"number", index});
     const Work samples{.first_pixel = wave.first_pixel,
                        .first_pass = wave.first_pass,
                        .count = wave.count,

@@ -52,7 +52,7 @@ class Scheduler {
     void observe(DepthObserver observer) { observer_ = std::move(observer); }
 
   private:
-    void run_wave(const Frame& frame, const Wave& wave);
+    void run_wave(const Frame& frame, const Wave& wave, uint64_t index);
     // One depth of a wave's paths; the number of rays that go on.
     uint32_t run_depth(const Frame& frame, const Work& work);
     DeviceStatus read_status() const;  // waits for the device; throws DeviceError when a kernel has failed

@@ -14,6 +14,9 @@ namespace {
 
 // Above this share of what the device can do, that is what holds a stage up.
 constexpr double BOUND_SHARE = 0.5;
+// A copy also fetches the lines that it writes, three for two that count: what moves more than this many times its bytes
+// per second finds them in a cache.
+constexpr double MOST_FROM_MEMORY = 1.5;
 
 // The queue whose rays a row traces, nullptr if it traces none.
 const RayVisits* visits_of(std::string_view row, const RenderVisits& visits) {
@@ -41,21 +44,24 @@ class LaneCount {
             case Stage::trace:
                 return items * RAY_LANES;
             case Stage::shade:
-                // Ray, throughput, sample; ambient, light contributions, layers; what is appended.
+                // Ray, throughput, sample; ambient, light contributions, layers; what is appended, and the
+                // throughput of paths that go on.
                 return items * (RAY_LANES + 2) + items * (1 + light_lanes) +
                        layer_lanes(rays.camera, {LAYER_EMISSION, LAYER_POSITION, LAYER_NORMAL, LAYER_SHADING,
                                                  LAYER_UV, LAYER_ALBEDO}) +
                        layer_lanes(rays.glossy, {LAYER_SPECULAR_EMISSION}) + rays.shadow * SHADOW_LANES +
-                       points() * POINT_LANES + rays.glossy * RAY_LANES;
+                       points() * POINT_LANES + rays.glossy * (RAY_LANES + 1);
             case Stage::shadow:
                 return items * (SHADOW_LANES + 1);
             case Stage::obscurance:
                 // Points and their samples; a result for each ray.
                 return points() * (POINT_LANES + 1) + items;
             case Stage::gather:
-                // Slot, ambient, light contributions; visibility, results; layers.
+                // Slot, ambient, light contributions; visibility, results; layers, and for obscurance the flag in
+                // the lane of the sample.
                 return items * (2 + light_lanes) + rays.shadow + rays.obscurance +
                        layer_lanes(rays.camera, {LAYER_DIRECT, LAYER_AMBIENT, LAYER_OBSCURANCE}) +
+                       layer_lanes(points(), {LAYER_OBSCURANCE}) +
                        layer_lanes(rays.glossy, {LAYER_SPECULAR_DIRECT, LAYER_SPECULAR_AMBIENT}) +
                        layer_lanes(shape.light_lobes > 1 ? items : 0, {LAYER_SPECULAR_EMISSION});
             case Stage::film:
@@ -123,6 +129,8 @@ std::string bound_text(const StageFigures& figures, uint64_t bvh_bytes, const De
     const double copy_share = over(figures.gb_per_s, rates.copy_gb_per_s);
     if (figures.idle_share >= BOUND_SHARE)
         return fmt::format("launching: {:.0f} % are launches and idle work items", 100 * figures.idle_share);
+    if (copy_share > MOST_FROM_MEMORY)
+        return fmt::format("cache bandwidth: {:.1f} times a copy's", copy_share);
     if (copy_share >= BOUND_SHARE)
         return fmt::format("memory bandwidth: {:.0f} % of a copy's", 100 * copy_share);
     const double core_ns = figures.ns_per_item * rates.cores;

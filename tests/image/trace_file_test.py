@@ -14,7 +14,7 @@ import unittest
 PROGRAM = os.environ["OBSCURA_PROGRAM"]
 SCENE = pathlib.Path(__file__).resolve().parents[2] / "scenes/cornell"
 SMALL = ["--width", "64", "--height", "48", "--obscurance-rays", "3", "--wave-size", "4096", "--quiet"]
-HOST, DEVICE = 0, 1
+HOST, DEVICE = 1, 2  # processes
 
 
 def render(folder, *arguments, **environment):
@@ -57,6 +57,8 @@ class Trace(unittest.TestCase):
         launches = collections.Counter(event["name"] for event in slices(self.events, "kernel"))
         self.assertEqual({name: row["launches"] for name, row in self.stats["kernels"].items()}, launches)
         self.assertIn("shadow", launches)
+        grids = [event["args"]["work items"] for event in slices(self.events, "kernel") if event["name"] == "camera"]
+        self.assertGreaterEqual(sum(grids), self.stats["rays"]["camera"])
 
     def test_slices_of_a_stage_add_up_to_its_milliseconds(self):
         for name, row in self.stats["kernels"].items():
@@ -72,11 +74,14 @@ class Trace(unittest.TestCase):
     def test_programs_tell_whether_they_were_compiled(self):
         for events, cache in ((self.cold, "miss"), (self.events, "hit")):
             programs = {event["name"]: event["args"]["cache"] for event in slices(events, "compile", HOST)}
-            self.assertEqual({name.split("_")[0]: cache for name in self.stats["kernels"]}, programs)
+            self.assertEqual({"compile " + name.split("_")[0]: cache for name in self.stats["kernels"]}, programs)
 
     def test_steps_of_the_host_are_there(self):
-        names = {event["name"] for event in slices(self.events, "host", HOST)}
+        steps = slices(self.events, "host", HOST)
+        names = {event["name"] for event in steps}
         self.assertLessEqual({"load", "open device", "build BVH", "wave", "depth 0", "wait", "develop", "write picture"}, names)
+        numbers = [event["args"]["number"] for event in steps if event["name"] == "wave"]
+        self.assertEqual(list(range(len(numbers))), numbers)
 
     def test_launches_that_only_warm_up_are_told_apart(self):
         others = {event["name"] for event in slices(self.cold, "kernel")} - set(self.stats["kernels"])
@@ -110,7 +115,7 @@ class Trace(unittest.TestCase):
         for event in self.events:
             if event["ph"] == "C":
                 self.assertEqual(DEVICE, event["pid"])
-                lengths[event["name"]] += event["args"]["items"]
+                lengths[event["name"]] += event["args"]["queued"]
         rays = self.stats["rays"]
         self.assertEqual({"camera rays": rays["camera"], "shadow rays": rays["shadow"], "glossy rays": rays["glossy"],
                           "obscurance points": rays["obscurance"] // self.stats["obscurance_rays"]}, lengths)
@@ -118,7 +123,7 @@ class Trace(unittest.TestCase):
     def test_rows_have_names(self):
         names = {(event["name"], event["pid"], event.get("tid")): event["args"]["name"]
                  for event in self.events if event["ph"] == "M"}
-        self.assertEqual("main", names["thread_name", HOST, 0])
+        self.assertEqual("main", names["thread_name", HOST, 1])
         self.assertEqual(self.stats["device"], names["process_name", DEVICE, None])
         named = {key[1:] for key in names if key[0] == "thread_name"}
         self.assertEqual(named, {(event["pid"], event["tid"]) for event in slices(self.events)})

@@ -40,6 +40,10 @@ TEST(Bound, StageWithoutRaysComputesUnlessItMovesWhatACopyDoes) {
     EXPECT_TRUE(is_bound_by("computing", figures));
     figures.gb_per_s = 6;
     EXPECT_TRUE(is_bound_by("memory bandwidth", figures));
+    figures.gb_per_s = 14;
+    EXPECT_TRUE(is_bound_by("memory bandwidth", figures));
+    figures.gb_per_s = 16;
+    EXPECT_TRUE(is_bound_by("cache bandwidth", figures));
 }
 
 TEST(Bound, LaunchesThatIdleComeFirst) {
@@ -64,11 +68,12 @@ TEST(Bound, RaysAreBoundByTheirVisitsOrByWhatIsAroundThem) {
 RenderResult small_render() {
     RenderResult result;
     result.rays = {.camera = 100, .shadow = 60, .glossy = 0, .obscurance = 160};
-    result.shape = {.layer_planes = 3, .light_samples = 1, .light_lobes = 1, .obscurance_rays = 2};
+    result.shape = {.layer_planes = 4, .light_samples = 1, .light_lobes = 1, .obscurance_rays = 2};
     result.planes.fill(NO_PLANE);
     result.planes[LAYER_EMISSION] = 0;
     result.planes[LAYER_DIRECT] = 1;
     result.planes[LAYER_AMBIENT] = 2;
+    result.planes[LAYER_OBSCURANCE] = 3;
     result.bytes["bvh"] = SMALL_TREE;
     for (const char* row : {"camera", "trace_camera", "shade", "gather"})
         result.profile[row] = {1, 100, 128, 1.0};
@@ -95,18 +100,19 @@ TEST(StageFigures, RowsAreThoseOfTheProfileInTheOrderOfTheStages) {
 }
 
 TEST(StageFigures, BytesAreThoseOfTheLanes) {
-    // Origin, direction, throughput, sample and three layers.
-    EXPECT_EQ(figures_of("camera").bytes, 100u * 7 * 16);
+    // Origin, direction, throughput, sample and four layers.
+    EXPECT_EQ(figures_of("camera").bytes, 100u * 8 * 16);
     EXPECT_EQ(figures_of("trace_camera").bytes, 100u * 3 * 16);
     // The ray with its hit, throughput, sample; ambient, a light contribution; emission read and written; shadow rays of
     // two lanes, 80 points of three.
     EXPECT_EQ(figures_of("shade").bytes, (100u * (5 + 2 + 2) + 60 * 2 + 80 * 3) * 16);
     EXPECT_EQ(figures_of("shadow").bytes, 60u * 3 * 16);
     EXPECT_EQ(figures_of("obscurance").bytes, (80u * 4 + 160) * 16);
-    // Slot, ambient, a light contribution; visibility, results; direct and ambient read and written.
-    EXPECT_EQ(figures_of("gather").bytes, (100u * 3 + 60 + 160 + 100 * 4) * 16);
+    // Slot, ambient, a light contribution; visibility, results; three layers, and the sample of each point, read and
+    // written.
+    EXPECT_EQ(figures_of("gather").bytes, (100u * 3 + 60 + 160 + 100 * 6 + 80 * 2) * 16);
     // Each sample's layers; each pixel's sums with what rounding left over, read and written.
-    EXPECT_EQ(figures_of("film").bytes, (100u * 3 + 25 * 3 * 4) * 16);
+    EXPECT_EQ(figures_of("film").bytes, (100u * 4 + 25 * 4 * 4) * 16);
 }
 
 TEST(StageFigures, ShareSpeedAndFillFollowFromTheCounts) {

@@ -43,7 +43,7 @@ class Trace : public testing::Test {
 
 TEST_F(Trace, WithoutEventsIsValid) {
     EXPECT_TRUE(events("X").empty());
-    EXPECT_EQ(row_names(), (Json{{"0:-1", "host"}, {"0:0", "main"}}));
+    EXPECT_EQ(row_names(), (Json{{"1:-1", "host"}, {"1:1", "main"}}));
 }
 
 TEST_F(Trace, SliceIsInMicroseconds) {
@@ -51,21 +51,21 @@ TEST_F(Trace, SliceIsInMicroseconds) {
     trace.add_command(device, TraceCategory::transfer, "upload nodes", 1234567, 1234570, {"bytes", 4096u});
     EXPECT_EQ(events("X"),
               std::vector<Json>{Json::parse(R"({"ph": "X", "name": "upload nodes", "cat": "transfer",
-        "pid": 1, "tid": 0, "ts": 1234.567, "dur": 0.003, "args": {"bytes": 4096}})")});
+        "pid": 2, "tid": 1, "ts": 1234.567, "dur": 0.003, "args": {"bytes": 4096}})")});
 }
 
 TEST_F(Trace, EachDeviceAndEachThreadHasARow) {
     trace.add_device("first");
     trace.add_device("second");
     std::thread([&] { const TraceStep step(&trace, TraceCategory::host, "build BVH"); }).join();
-    EXPECT_EQ(row_names(), (Json{{"0:-1", "host"},
-                                 {"0:0", "main"},
-                                 {"0:1", "worker 1"},
-                                 {"1:-1", "first"},
-                                 {"1:0", "command queue"},
-                                 {"2:-1", "second"},
-                                 {"2:0", "command queue"}}));
-    EXPECT_EQ(events("X").at(0).at("tid"), 1);
+    EXPECT_EQ(row_names(), (Json{{"1:-1", "host"},
+                                 {"1:1", "main"},
+                                 {"1:2", "worker"},
+                                 {"2:-1", "first"},
+                                 {"2:1", "command queue"},
+                                 {"3:-1", "second"},
+                                 {"3:1", "command queue"}}));
+    EXPECT_EQ(events("X").at(0).at("tid"), 2);
 }
 
 TEST_F(Trace, StepsNestAndTellTheirDetail) {
@@ -96,12 +96,12 @@ TEST_F(Trace, QueueLengthIsACounter) {
     trace.add_queue_length(device, "shadow rays", 2000, 17);
     EXPECT_EQ(events("C"),
               std::vector<Json>{Json::parse(
-                  R"({"ph": "C", "name": "shadow rays", "pid": 1, "ts": 2, "args": {"items": 17}})")});
+                  R"({"ph": "C", "name": "shadow rays", "pid": 2, "ts": 2, "args": {"queued": 17}})")});
 }
 
 TEST_F(Trace, NamesWithQuotesAndForeignBytesStayValid) {
     trace.add_device("the \"fast\" one\\\n\xff");
-    EXPECT_EQ(row_names().at("1:-1"), "the \"fast\" one\\\n\xef\xbf\xbd");
+    EXPECT_EQ(row_names().at("2:-1"), "the \"fast\" one\\\n\xef\xbf\xbd");
 }
 
 }  // namespace
