@@ -54,14 +54,15 @@ void Scheduler::run_stages(StageTime time, const Work& work) {
     }
 }
 
-uint64_t Scheduler::render(const Frame& frame, const WaveCallback& after_wave) {
+uint64_t Scheduler::render(const Frame& frame, uint32_t first_pass, uint32_t pass_count,
+                           const WaveCallback& after_wave) {
     queues_.frame.upload(std::span(&frame, 1));
-    queues_.film.clear();
     const uint32_t pixels = frame.crop.z;
     uint64_t done = 0;
     for (uint64_t index = 0;; ++index) {
-        const Wave wave = wave_at(index, frame.crop.w, pixels, frame.sampling.x);
+        Wave wave = wave_at(index, frame.crop.w, pixels, pass_count);
         if (wave.count == 0) break;
+        wave.first_pass += first_pass;
         run_wave(frame, wave);
         done += wave.count;
         if (!after_wave(done, rays_)) break;
