@@ -35,6 +35,7 @@ Json to_json(const std::vector<DeviceInfo>& devices) {
                         {"driver_version", info.driver_version},
                         {"opencl_version", info.opencl_version},
                         {"compute_units", info.compute_units},
+                        {"max_sub_devices", info.max_sub_devices},
                         {"memory_bytes", info.memory_bytes},
                         {"max_allocation_bytes", info.max_allocation_bytes},
                         {"float_features", info.float_features}});
@@ -57,7 +58,10 @@ void print_table(const std::vector<DeviceInfo>& devices) {
         fmt::print("     platform        {} ({}:{})\n", info.platform, info.platform_index,
                    info.device_index);
         fmt::print("     driver          {}, {}\n", info.driver_version, info.opencl_version);
-        fmt::print("     compute units   {}\n", info.compute_units);
+        fmt::print("     compute units   {}{}\n", info.compute_units,
+                   info.max_sub_devices > 0
+                       ? fmt::format(", which make up to {} sub-devices", info.max_sub_devices)
+                       : "");
         fmt::print("     memory          {}, at most {} in one buffer\n", bytes_text(info.memory_bytes),
                    bytes_text(info.max_allocation_bytes));
         fmt::print("     floats          {}\n", fmt::join(info.float_features, ", "));
@@ -68,7 +72,8 @@ void print_table(const std::vector<DeviceInfo>& devices) {
     else
         fmt::print(
             "Choose one with --device or OBSCURA_DEVICE: an index, platform:device, or part of its or its "
-            "platform's name or version.\n");
+            "platform's name or version.\nSeveral, separated by commas, share a render; SELECTOR/N splits a "
+            "device into N sub-devices.\n");
 }
 
 }  // namespace

@@ -70,26 +70,31 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
         seconds.load = run.seconds();
         return read;
     });
-    std::unique_ptr<Device> opened;
+    std::vector<std::unique_ptr<Device>> opened;
     std::exception_ptr no_device;
     try {
         const TraceStep step(&trace, TraceCategory::host, "open device");
-        opened.reset(new Device(open_device(options.device)));
+        opened = open_devices(options.device);
     } catch (const std::exception&) {
         no_device = std::current_exception();
     }
     const Scene scene = reading.get();  // what is wrong with the scene is told first
     if (no_device) std::rethrow_exception(no_device);
-    Device& device = *opened;
-    if (!out.trace.empty()) device.log_commands(trace);
-    ProgramLibrary library(device, options.local_size);
+    std::vector<std::unique_ptr<ProgramLibrary>> libraries;
+    std::vector<RenderDevice> devices;
+    for (const auto& device : opened) {
+        if (!out.trace.empty()) device->log_commands(trace);
+        libraries.push_back(std::make_unique<ProgramLibrary>(*device, options.local_size));
+        devices.push_back({*device, *libraries.back()});
+    }
     catch_interrupts();
-    log_info("{}: {}, {}; device {}", scene.name, counted(scene.triangles.size(), "triangle"),
-             counted(scene.objects.size(), "object"), device.name());
+    log_info("{}: {}, {}; {} {}", scene.name, counted(scene.triangles.size(), "triangle"),
+             counted(scene.objects.size(), "object"), plural(devices.size(), "device"),
+             device_names(devices));
     std::unique_ptr<Progress> progress;
     RenderJob job{scene, settings, layers, queue_bytes, options.wave_size, options.portable};
     job.count_visits = out.needs_visits();
-    RenderResult result = render_scene(device, library, job, [&](double fraction, const RayCounts& rays) {
+    RenderResult result = render_scene(devices, job, [&](double fraction, const RayCounts& rays) {
         if (!progress) {
             seconds.first_wave = run.seconds();
             progress = std::make_unique<Progress>("render", "ray");
@@ -102,11 +107,11 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
 
     ignore_interrupts();
     if (result.rays.camera == 0) {
-        write_trace(out, device);
+        write_trace(out, devices, trace);
         log_warning("stopped before the first sample: no picture is written");
         return ExitCode::interrupted;
     }
-    write_outputs(out, scene, device, library, result, options.portable, seconds, run);
+    write_outputs(out, scene, devices, trace, result, options.portable, seconds, run);
     if (result.complete) return ExitCode::ok;
     log_warning("stopped early: the picture is saved with the samples it has");
     return ExitCode::interrupted;

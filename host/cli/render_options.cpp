@@ -171,12 +171,14 @@ void add_sample_options(CLI::App& command, RenderOptions& o) {
 
 void add_device_options(CLI::App& command, RenderOptions& o) {
     command
-        .add_option("--device", o.device,
-                    "Index, platform:device, or part of the device's or platform's name or version (see "
-                    "obscura devices); the variable OBSCURA_DEVICE if not given")
+        .add_option(
+            "--device", o.device,
+            "Index, platform:device, or part of the device's or platform's name or version (see "
+            "obscura devices); the variable OBSCURA_DEVICE if not given. render shares its work among "
+            "several, A,B, and splits one into N by A/N")
         ->check(not_empty())
         ->group(WORK_GROUP);
-    command.add_option("--memory", o.memory, "Device memory for the queues: bytes, or with K, M, G")
+    command.add_option("--memory", o.memory, "Each device's memory for the queues: bytes, or with K, M, G")
         ->capture_default_str()
         ->group(WORK_GROUP);
     command

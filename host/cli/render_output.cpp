@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/render_output.h"
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
-#include <optional>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -70,7 +70,8 @@ void add_figure_options(CLI::App& command, OutputOptions& out) {
         ->group(GROUP);
 }
 
-void print_summary(const RenderResult& result, const RunSeconds& seconds) {
+void print_summary(const RenderResult& result, std::span<const RenderDevice> devices,
+                   const RunSeconds& seconds) {
     const double rays = static_cast<double>(result.rays.total());
     log_info("{} {} in {}, {} rays/s (camera {}, shadow {}, glossy {}, obscurance {})", si_count(rays),
              plural(result.rays.total(), "ray"), duration_text(result.seconds.render),
@@ -83,19 +84,37 @@ void print_summary(const RenderResult& result, const RunSeconds& seconds) {
              duration_text(result.seconds.compile), duration_text(result.seconds.upload),
              duration_text(result.seconds.render), duration_text(seconds.write),
              bytes_text(result.bytes.at("peak_device")));
+    if (devices.size() == 1) return;
+    for (size_t i = 0; i < devices.size(); ++i) {
+        const double share =
+            static_cast<double>(result.devices[i].rays.camera) / static_cast<double>(result.rays.camera);
+        log_info("{}: {:.0f} % of the samples", devices[i].device.name(), 100 * share);
+    }
 }
 
 void write_heat_map(const RenderResult& result, const std::string& path) {
-    const VisitRange range = write_visit_map_png(result.image, result.visits->nodes_per_sample, path);
+    const VisitRange range = write_visit_map_png(result.image, result.nodes_per_sample, path);
     log_info("wrote {}: from black for 0 to pale yellow for {:.0f} nodes per sample; the most are {:.0f}",
              path, range.brightest, range.most);
 }
 
-RenderProfile make_profile(const RenderResult& result, Device& device, ProgramLibrary& library,
-                           bool portable) {
-    const TraceStep step(device.trace(), TraceCategory::host, "measure the device");
-    const DeviceRates rates = measure_rates(device, library, portable);
-    return RenderProfile{rates, stage_figures(result, rates), *result.visits};
+std::vector<RenderProfile> make_profiles(const RenderResult& result, std::span<const RenderDevice> devices,
+                                         TraceRecord& trace, bool portable) {
+    std::vector<RenderProfile> profiles;
+    for (size_t i = 0; i < devices.size(); ++i) {
+        const TraceStep step(&trace, TraceCategory::host, "measure the device");
+        const DeviceWork& work = result.devices[i];
+        const DeviceRates rates = measure_rates(devices[i].device, devices[i].library, portable);
+        profiles.push_back({rates, stage_figures(work, rates), *work.visits});
+    }
+    return profiles;
+}
+
+void print_profiles(const std::vector<RenderProfile>& profiles, std::span<const RenderDevice> devices) {
+    for (size_t i = 0; i < profiles.size(); ++i) {
+        if (profiles.size() > 1) fmt::print("{}{}\n", i > 0 ? "\n" : "", devices[i].device.name());
+        print_profile(profiles[i]);
+    }
 }
 
 }  // namespace
@@ -117,18 +136,20 @@ void check_output_options(const OutputOptions& out, const std::string& scene_fil
     if (out.trace == "-") throw InputError("--trace -: traces are written to files only");
 }
 
-void write_trace(const OutputOptions& out, const Device& device) {
+void write_trace(const OutputOptions& out, std::span<const RenderDevice> devices, const TraceRecord& trace) {
     if (out.trace.empty()) return;
-    device.commands()->flush();
-    device.trace()->write(out.trace);
+    for (const RenderDevice& device : devices)
+        device.device.commands()->flush();
+    trace.write(out.trace);
     log_info("wrote {}", out.trace);
 }
 
-void write_outputs(const OutputOptions& out, const Scene& scene, Device& device, ProgramLibrary& library,
-                   RenderResult& result, bool portable, RunSeconds& seconds, const Stopwatch& run) {
+void write_outputs(const OutputOptions& out, const Scene& scene, std::span<const RenderDevice> devices,
+                   TraceRecord& trace, RenderResult& result, bool portable, RunSeconds& seconds,
+                   const Stopwatch& run) {
     const Stopwatch writing;
-    const auto step = [&](const char* name) { return TraceStep(device.trace(), TraceCategory::host, name); };
-    if (!out.heat_map.empty()) result.image.layers.push_back(visit_layer(result.visits->nodes_per_sample));
+    const auto step = [&](const char* name) { return TraceStep(&trace, TraceCategory::host, name); };
+    if (!out.heat_map.empty()) result.image.layers.push_back(visit_layer(result.nodes_per_sample));
     write_all({[&] {
                    const TraceStep traced = step("write picture");
                    if (out.names == ExrNames::blender) use_blender_names(result.image);
@@ -149,14 +170,14 @@ void write_outputs(const OutputOptions& out, const Scene& scene, Device& device,
                [&] {
                    seconds.write = writing.seconds();
                    seconds.total = run.seconds();
-                   std::optional<RenderProfile> profile;
-                   if (out.profile) profile = make_profile(result, device, library, portable);
-                   if (profile && out.stats != "-") print_profile(*profile);
+                   std::vector<RenderProfile> profiles;
+                   if (out.profile) profiles = make_profiles(result, devices, trace, portable);
+                   if (out.stats != "-") print_profiles(profiles, devices);
                    if (out.stats.empty()) return;
-                   write_stats(out.stats, scene, device.info(), result, seconds, profile);
+                   write_stats(out.stats, scene, devices, result, seconds, profiles);
                },
-               [&] { write_trace(out, device); }});
-    print_summary(result, seconds);
+               [&] { write_trace(out, devices, trace); }});
+    print_summary(result, devices, seconds);
 }
 
 }  // namespace obscura

@@ -5,12 +5,13 @@
 #include <CLI/App.hpp>
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "base/stopwatch.h"
+#include "base/trace.h"
 #include "cli/stats.h"
-#include "device/program.h"
 #include "scene/scene.h"
 #include "wavefront/render.h"
 
@@ -40,10 +41,11 @@ std::shared_ptr<OutputOptions> add_output_options(CLI::App& command);
 void check_output_options(const OutputOptions& out, const std::string& scene_file);
 
 // The trace alone, if one is wanted.
-void write_trace(const OutputOptions& out, const Device& device);
+void write_trace(const OutputOptions& out, std::span<const RenderDevice> devices, const TraceRecord& trace);
 // Everything that is wanted; whatever fails, the rest is written. portable: the kernels were; run: since the
 // program's start. Of seconds, write and total are filled.
-void write_outputs(const OutputOptions& out, const Scene& scene, Device& device, ProgramLibrary& library,
-                   RenderResult& result, bool portable, RunSeconds& seconds, const Stopwatch& run);
+void write_outputs(const OutputOptions& out, const Scene& scene, std::span<const RenderDevice> devices,
+                   TraceRecord& trace, RenderResult& result, bool portable, RunSeconds& seconds,
+                   const Stopwatch& run);
 
 }  // namespace obscura

@@ -2,11 +2,10 @@
 // The figures of a run as JSON, for --stats.
 #pragma once
 
-#include <optional>
+#include <span>
 #include <string>
 
 #include "cli/profile_report.h"
-#include "device/selector.h"
 #include "scene/scene.h"
 #include "wavefront/render.h"
 
@@ -20,9 +19,9 @@ struct RunSeconds {
     double total = 0;
 };
 
-// path: a file, or "-" for standard output. Throws InputError.
-void write_stats(const std::string& path, const Scene& scene, const DeviceInfo& device,
+// path: a file, or "-" for standard output. profiles: of each device, or none. Throws InputError.
+void write_stats(const std::string& path, const Scene& scene, std::span<const RenderDevice> devices,
                  const RenderResult& result, const RunSeconds& seconds,
-                 const std::optional<RenderProfile>& profile);
+                 std::span<const RenderProfile> profiles);
 
 }  // namespace obscura

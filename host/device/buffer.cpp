@@ -28,7 +28,7 @@ Buffer::Buffer(Device& device, std::string name, std::string category, uint64_t 
     if (bytes > info.max_allocation_bytes)
         throw DeviceError(
             "The buffer \"{}\" needs {} ({} bytes), but {} allows at most {} ({} bytes) in one buffer.",
-            name_, bytes_text(bytes), bytes, info.name, bytes_text(info.max_allocation_bytes),
+            name_, bytes_text(bytes), bytes, device.name(), bytes_text(info.max_allocation_bytes),
             info.max_allocation_bytes);
     cl_int code = CL_SUCCESS;
     handle_ = cl::Buffer(device.context(), CL_MEM_READ_WRITE, allocation_bytes(bytes), nullptr, &code);
@@ -36,7 +36,7 @@ Buffer::Buffer(Device& device, std::string name, std::string category, uint64_t 
         throw DeviceError(
             "The buffer \"{}\" of {} can't be allocated on {} ({} are in use): clCreateBuffer failed with {} "
             "({}).",
-            name_, bytes_text(bytes), info.name, bytes_text(device.memory().current_bytes()),
+            name_, bytes_text(bytes), device.name(), bytes_text(device.memory().current_bytes()),
             error_name(code), code);
     device_ = &device;
     device.memory().add(category_, allocation_bytes(bytes));

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "device/command_log.h"
 #include "device/memory_ledger.h"
@@ -15,12 +17,13 @@ namespace obscura {
 
 class Device {
   public:
-    Device(cl::Device handle, DeviceInfo info);
+    // name: in messages, traces and figures; sub-devices share the one of their driver.
+    Device(cl::Device handle, DeviceInfo info, std::string name);
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
 
     const DeviceInfo& info() const { return info_; }
-    const std::string& name() const { return info_.name; }
+    const std::string& name() const { return name_; }
     const cl::Device& handle() const { return handle_; }
     const cl::Context& context() const { return context_; }
     const cl::CommandQueue& queue() const { return queue_; }
@@ -51,6 +54,7 @@ class Device {
   private:
     cl::Device handle_;
     DeviceInfo info_;
+    std::string name_;
     cl::Context context_;
     cl::CommandQueue queue_;
     bool correctly_rounded_division_ = false;
@@ -61,8 +65,11 @@ class Device {
     std::unique_ptr<CommandLog> commands_;
 };
 
-// Opens the device that the selector means (select_device); an empty selector means the environment variable
-// OBSCURA_DEVICE, and if that is unset or empty the default device.
+// Opens the devices that the selector means (select_devices); an empty selector means the environment variable
+// OBSCURA_DEVICE, and if that is unset or empty the default device. Sub-devices of one device are devices of their own.
+std::vector<std::unique_ptr<Device>> open_devices(std::string_view selector = {});
+
+// For work that takes one device: throws InputError if the selector means several.
 Device open_device(std::string_view selector = {});
 
 }  // namespace obscura

@@ -3,6 +3,7 @@
 // that answers with an error becomes a row that says so; it never hides the others.
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -86,6 +87,14 @@ std::vector<std::string> float_features(cl_device_fp_config config) {
     return features;
 }
 
+// The kind of split that open_devices() asks for.
+uint32_t max_sub_devices(Properties<cl::Device>& device) {
+    const auto kinds = device.get<std::vector<cl_device_partition_property>>(CL_DEVICE_PARTITION_PROPERTIES);
+    const bool by_counts = std::ranges::find(kinds, CL_DEVICE_PARTITION_BY_COUNTS) != kinds.end();
+    const auto most = device.get<cl_uint>(CL_DEVICE_PARTITION_MAX_SUB_DEVICES);
+    return by_counts && most > 1 ? most : 0;
+}
+
 DeviceInfo describe_device(const cl::Device& handle, const DeviceInfo& platform, int device_index) {
     Properties device(handle);
     DeviceInfo info = platform;
@@ -100,6 +109,7 @@ DeviceInfo describe_device(const cl::Device& handle, const DeviceInfo& platform,
     info.is_cpu = (device.get<cl_device_type>(CL_DEVICE_TYPE) & CL_DEVICE_TYPE_CPU) != 0;
     info.reason = missing_requirement(device, info);
     info.usable = info.reason.empty();
+    info.max_sub_devices = max_sub_devices(device);
     return info;
 }
 

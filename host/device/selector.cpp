@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/units.h"
 
 namespace obscura {
 
@@ -67,6 +68,34 @@ std::vector<int> matches(std::span<const DeviceInfo> devices, std::string_view s
     });
 }
 
+std::string_view trimmed(std::string_view text) {
+    const size_t first = text.find_first_not_of(" \t");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+// SELECTOR or SELECTOR/N.
+DeviceChoice select_choice(std::span<const DeviceInfo> devices, std::string_view entry) {
+    const size_t slash = entry.rfind('/');
+    if (slash == std::string_view::npos || !matches(devices, entry).empty())
+        return {select_device(devices, entry), 1};
+    const auto parts = parse_index(entry.substr(slash + 1));
+    if (!parts || *parts < 1)
+        throw InputError(
+            "\"{}\": no device is called so, and behind a / stands a number of sub-devices, 1 or more",
+            entry);
+    const int position = select_device(devices, entry.substr(0, slash));
+    const DeviceInfo& info = devices[static_cast<size_t>(position)];
+    const auto count = static_cast<uint32_t>(*parts);
+    if (count > 1 && info.max_sub_devices == 0)
+        throw InputError("\"{}\": {} can't be split into sub-devices", entry, info.name);
+    if (count > std::max(info.max_sub_devices, 1u))
+        throw InputError("\"{}\": {} has {}, which make at most {}", entry, info.name,
+                         counted(info.compute_units, "compute unit"),
+                         counted(info.max_sub_devices, "sub-device"));
+    return {position, count};
+}
+
 }  // namespace
 
 int default_device(std::span<const DeviceInfo> devices) {
@@ -99,6 +128,24 @@ int select_device(std::span<const DeviceInfo> devices, std::string_view selector
         throw InputError("The OpenCL device that \"{}\" means can't be used:{}", selector,
                          describe(devices, found));
     return found.front();
+}
+
+std::vector<DeviceChoice> select_devices(std::span<const DeviceInfo> devices, std::string_view selector) {
+    if (selector.empty() || !matches(devices, selector).empty())
+        return {{select_device(devices, selector), 1}};
+    std::vector<DeviceChoice> choices;
+    for (size_t start = 0; start <= selector.size();) {
+        const size_t end = std::min(selector.find(',', start), selector.size());
+        const std::string_view entry = trimmed(selector.substr(start, end - start));
+        if (entry.empty()) throw InputError("\"{}\": an entry of the list is empty", selector);
+        const DeviceChoice choice = select_choice(devices, entry);
+        if (std::ranges::find(choices, choice.position, &DeviceChoice::position) != choices.end())
+            throw InputError("\"{}\" means a device twice; it can be split by /N:\n{}", selector,
+                             describe(devices[static_cast<size_t>(choice.position)]));
+        choices.push_back(choice);
+        start = end + 1;
+    }
+    return choices;
 }
 
 }  // namespace obscura

@@ -21,6 +21,7 @@ struct DeviceInfo {
     std::string platform, platform_version;
     std::string name, driver_version, opencl_version;
     uint32_t compute_units = 0;
+    uint32_t max_sub_devices = 0;  // that it can be split into; 0 = it can't
     uint64_t memory_bytes = 0, max_allocation_bytes = 0;
     std::vector<std::string> float_features;  // what CL_DEVICE_SINGLE_FP_CONFIG names
     bool is_cpu = false;
@@ -41,5 +42,17 @@ int default_device(std::span<const DeviceInfo> devices);
 // candidates if none or several match or the match is not usable; DeviceError with the reasons if no device
 // is usable at all.
 int select_device(std::span<const DeviceInfo> devices, std::string_view selector);
+
+// A device, or what it is split into.
+struct DeviceChoice {
+    int position = -1;   // in the list
+    uint32_t parts = 1;  // sub-devices; 1 = the device as it is
+    bool operator==(const DeviceChoice&) const = default;
+};
+
+// The same for several devices: selectors separated by commas, each with /N behind it where the device is to be split into N
+// sub-devices. A part of a name may hold commas and slashes of its own. Throws InputError too if a device can't be split so,
+// or is meant twice.
+std::vector<DeviceChoice> select_devices(std::span<const DeviceInfo> devices, std::string_view selector);
 
 }  // namespace obscura

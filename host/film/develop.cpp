@@ -114,7 +114,16 @@ const LayerInfo& layer_info(const std::string& name) {
     return *found;
 }
 
-void develop_band(const FilmSums& film, std::span<const std::string> wanted, Image& image) {
+void add_layers(std::span<const std::string> wanted, Image& image) {
+    const auto add = [&](const std::string& name, const std::vector<std::string>& channels) {
+        image.layers.push_back({name, channels, std::vector<float>(image.pixel_count() * channels.size())});
+    };
+    add("", {"R", "G", "B", "A"});
+    for (const std::string& name : wanted)
+        add(name, layer_info(name).channels);
+}
+
+void develop(const FilmSums& film, Image& image) {
     const size_t planes = static_cast<size_t>(
         std::ranges::count_if(film.planes, [](uint32_t plane) { return plane != NO_PLANE; }));
     OBSCURA_CHECK(planes > 0 && film.sums.size() % planes == 0, "{} sums in {} planes", film.sums.size(),
@@ -123,35 +132,28 @@ void develop_band(const FilmSums& film, std::span<const std::string> wanted, Ima
     OBSCURA_CHECK(film.pixel_order.size() == pixel_count, "{} places for {} pixels", film.pixel_order.size(),
                   pixel_count);
     const Developer developer(film, pixel_count);
-    if (image.layers.empty()) {
-        image.layers.push_back({"", {"R", "G", "B", "A"}, {}});
-        for (const std::string& name : wanted)
-            image.layers.push_back({name, layer_info(name).channels, {}});
-    }
 
-    // Appends the band to a layer; value_at: of a place in the order of visits.
-    const auto append = [&](Layer& layer, size_t first, auto value_at) {
+    // value_at: of a place in the order of visits.
+    const auto fill = [&](Layer& layer, size_t first, auto value_at) {
         const size_t channels = layer.channels.size();
-        const size_t start = layer.pixels.size();
-        layer.pixels.resize(start + pixel_count * channels);
         for (size_t place = 0; place < pixel_count; ++place) {
             const f32x4 value = value_at(place);
-            float* const pixel = &layer.pixels[start + film.pixel_order[place] * channels];
+            float* const pixel = &layer.pixels[(film.first_pixel + film.pixel_order[place]) * channels];
             for (size_t c = 0; c < channels; ++c)
                 pixel[c] = component(value, first + c);
         }
     };
-    append(image.layers[0], 0, [&](size_t place) { return developer.beauty(place); });
-    for (size_t i = 0; i < wanted.size(); ++i) {
-        const std::string& name = wanted[i];
-        Layer& layer = image.layers[i + 1];
-        if (name == "Variance") {
-            append(layer, 0, [&](size_t place) { return developer.variance(place); });
-        } else if (name == "RelativeVariance") {
-            append(layer, 0, [&](size_t place) { return developer.relative_variance(place); });
+    for (Layer& layer : image.layers) {
+        if (layer.name.empty()) {
+            fill(layer, 0, [&](size_t place) { return developer.beauty(place); });
+        } else if (layer.name == "Variance") {
+            fill(layer, 0, [&](size_t place) { return developer.variance(place); });
+        } else if (layer.name == "RelativeVariance") {
+            fill(layer, 0, [&](size_t place) { return developer.relative_variance(place); });
         } else {
-            const uint32_t kept = layer_info(name).layer;
-            append(layer, first_component(name), [&](size_t place) { return developer.mean(kept, place); });
+            const uint32_t kept = layer_info(layer.name).layer;
+            fill(layer, first_component(layer.name),
+                 [&](size_t place) { return developer.mean(kept, place); });
         }
     }
 }

@@ -26,7 +26,7 @@ struct LayerInfo {
 const std::vector<LayerInfo>& layer_table();
 const LayerInfo& layer_info(const std::string& name);  // names not in the table: OBSCURA_CHECK
 
-// The sums of one film: plane of each LAYER_* (NO_PLANE = not kept), plane * pixel_count + the pixel's place in the order
+// The sums of a film, or of some of its pixels: plane of each LAYER_* (NO_PLANE = not kept), plane * pixel_count + the pixel's place in the order
 // of visits.
 struct FilmSums {
     std::array<uint32_t, LAYER_COUNT> planes;
@@ -35,11 +35,14 @@ struct FilmSums {
     // Samples that each pixel has: the first pixels_ahead pixels in that order have one more than the others.
     uint64_t samples = 0;
     uint64_t pixels_ahead = 0;
+    size_t first_pixel = 0;  // of the image: the one that pixel_order calls 0
 };
 
-// Appends the rows of a film band to the image's layers, making the layers on the first call: beauty (the sum of the
-// layers that partition it, alpha = coverage), then the wanted layers by name; one that is not kept is black. Pixels without a
-// sample stay 0. Names not in the table: OBSCURA_CHECK.
-void develop_band(const FilmSums& film, std::span<const std::string> wanted, Image& image);
+// Black layers for the image's pixels: beauty, then the wanted ones by name. Names not in the table: OBSCURA_CHECK.
+void add_layers(std::span<const std::string> wanted, Image& image);
+
+// Puts the film's pixels into these layers: beauty is the sum of the layers that partition it, alpha = coverage. Of the others
+// those that are not kept stay black, and so do pixels without a sample.
+void develop(const FilmSums& film, Image& image);
 
 }  // namespace obscura

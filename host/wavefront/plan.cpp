@@ -93,8 +93,8 @@ uint32_t wave_capacity(const QueueShape& shape, uint64_t wanted, uint64_t memory
         std::clamp(std::min(wanted, fits), uint64_t{1}, std::max(sample_count, MIN_WAVE)));
 }
 
-Wave wave_at(uint64_t index, uint32_t capacity, uint32_t pixel_count, uint32_t spp) {
-    const uint64_t total = uint64_t{pixel_count} * spp;
+Wave wave_at(uint64_t index, uint32_t capacity, uint32_t pixel_count, uint32_t pass_count) {
+    const uint64_t total = uint64_t{pixel_count} * pass_count;
     const uint64_t first = index * capacity;
     if (first >= total) return {};
     return {static_cast<uint32_t>(first % pixel_count), static_cast<uint32_t>(first / pixel_count),

@@ -43,7 +43,7 @@ struct Wave {
 };
 
 // Wave number `index` of the run; count 0 past the end.
-Wave wave_at(uint64_t index, uint32_t capacity, uint32_t pixel_count, uint32_t spp);
+Wave wave_at(uint64_t index, uint32_t capacity, uint32_t pixel_count, uint32_t pass_count);
 
 // Horizontal bands of rect whose film fits into max_film_bytes and whose pixels 31 bits count; one band in nearly every
 // render.

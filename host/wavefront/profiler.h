@@ -17,6 +17,14 @@ struct StageProfile {
     uint64_t items = 0;
     uint64_t work_items = 0;  // launched, with work or without
     double ms = 0;            // on the device, start to end
+
+    StageProfile& operator+=(const StageProfile& other) {
+        launches += other.launches;
+        items += other.items;
+        work_items += other.work_items;
+        ms += other.ms;
+        return *this;
+    }
 };
 
 class Profiler {

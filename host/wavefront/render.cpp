@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "wavefront/render.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
-#include <cmath>
-#include <functional>
 #include <future>
+#include <limits>
 
 #include "base/error.h"
 #include "base/memory.h"
@@ -13,30 +14,12 @@
 #include "bvh/bvh.h"
 #include "film/develop.h"
 #include "sampling/pixel_order.h"
-#include "sampling/sample_order.h"
 #include "wavefront/describe.h"
-#include "wavefront/features.h"
 #include "wavefront/frame.h"
+#include "wavefront/team.h"
 
 namespace obscura {
 namespace {
-
-StageKernels prepare_kernels(ProgramLibrary& library, const Needs& needs, const RenderJob& job) {
-    const bool all = job.settings.needs == NeedsMode::all;
-    std::vector<KernelRequest> requests;
-    const std::vector<Stage> stages = needed_stages(needs);
-    requests.reserve(stages.size());
-    for (const Stage stage : stages) {
-        requests.push_back(
-            {std::string(stage_info(stage).name), stage_options(stage, needs, all, job.portable)});
-    }
-    library.prepare(requests);
-    StageKernels kernels;
-    for (size_t i = 0; i < stages.size(); ++i) {
-        kernels[static_cast<uint32_t>(stages[i])] = library.kernel(requests[i]);
-    }
-    return kernels;
-}
 
 std::vector<uint32_t> wanted_layers(const std::vector<std::string>& names) {
     std::vector<uint32_t> layers;
@@ -62,20 +45,90 @@ void check_picture_memory(const PixelRect& rect, const std::vector<std::string>&
         bytes_text(physical_memory_bytes()));
 }
 
-std::map<std::string, uint64_t> peak_bytes(const Device& device) {
-    std::map<std::string, uint64_t> bytes;
-    for (const char* category : {"scene", "bvh", "queues", "film"}) {
-        bytes[category] = device.memory().peak_bytes(category);
+// Renders a band of rect into the image. Once the render is stopped, the remaining bands stay black.
+void render_band(Team& team, const FrameInput& input, const PixelRect& band, const PixelRect& rect,
+                 const PieceSize& piece, TraceRecord* trace, RenderResult& result) {
+    const auto pixels = static_cast<uint32_t>(band.pixel_count());
+    const uint32_t spp = input.settings.spp;
+    const size_t first_pixel = uint64_t{band.y0 - rect.y0} * rect.width();
+    const std::vector<uint32_t> pixel_order = tiled_pixel_order(band.width(), band.height());
+    PixelNodes pixel_nodes(result.nodes_per_sample.empty() ? 0 : pixels);
+    WorkList list(pixels, spp, piece);
+    std::vector<FilmRange> film(list.range_count());
+    if (result.complete) team.render(make_frame(input, band, 0), pixel_order, list, film, pixel_nodes);
+
+    const TraceStep step(trace, TraceCategory::host, "develop");
+    size_t place = 0;
+    for (const FilmRange& range : film) {
+        const size_t count = std::min<size_t>(piece.pixel_count, pixels - place);
+        const auto order = std::span(pixel_order).subspan(place, count);
+        const uint64_t passes = range.sample_count / count, ahead = range.sample_count % count;
+        place += count;
+        result.samples_per_pixel = std::min(result.samples_per_pixel, static_cast<uint32_t>(passes));
+        if (range.sums.empty()) continue;
+        develop({input.planes, range.sums, order, passes, ahead, first_pixel}, result.image);
+        if (!pixel_nodes.empty())
+            average_nodes(pixel_nodes, order, passes, ahead,
+                          std::span(result.nodes_per_sample).subspan(first_pixel));
     }
-    bytes["peak_device"] = device.memory().peak_bytes();
+    result.complete = result.complete && result.samples_per_pixel == spp;
+}
+
+void add(DeviceWork& sum, const DeviceWork& work) {
+    sum.rays += work.rays;
+    sum.wave_capacity += work.wave_capacity;
+    for (const auto& [name, row] : work.profile)
+        sum.profile[name] += row;
+    for (const auto& [name, bytes] : work.bytes)
+        sum.bytes[name] += bytes;
+    if (!work.visits) return;
+    for (size_t i = 0; i < RAY_QUEUES.size(); ++i)
+        sum.visits->queues[i].add(work.visits->queues[i]);
+    sum.visits->seconds += work.visits->seconds;
+}
+
+// The devices' work, and its sum.
+void collect_work(const Team& team, const LayerPlanes& planes, RenderResult& result) {
+    result.devices = team.work();
+    for (DeviceWork& device : result.devices)
+        device.planes = planes;
+    DeviceWork& sum = result;
+    sum = result.devices.front();
+    for (size_t i = 1; i < result.devices.size(); ++i)
+        add(sum, result.devices[i]);
+    // They count side by side.
+    if (sum.visits) sum.visits->seconds /= static_cast<double>(result.devices.size());
+}
+
+uint64_t smallest_allocation(std::span<const RenderDevice> devices) {
+    uint64_t bytes = std::numeric_limits<uint64_t>::max();
+    for (const RenderDevice& device : devices)
+        bytes = std::min(bytes, device.device.info().max_allocation_bytes);
     return bytes;
 }
 
 }  // namespace
 
+std::string device_names(std::span<const RenderDevice> devices) {
+    std::vector<std::string> names;
+    for (const RenderDevice& device : devices)
+        names.push_back(device.device.name());
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
 RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJob& job,
                           const RenderCallback& after_wave) {
-    device.memory().reset_peaks();
+    const RenderDevice only{device, library};
+    return render_scene(std::span(&only, 1), job, after_wave);
+}
+
+RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob& job,
+                          const RenderCallback& after_wave) {
+    OBSCURA_CHECK(!devices.empty() && (devices.size() == 1 || !job.observer), "an observer of {}",
+                  counted(devices.size(), "device"));
+    for (const RenderDevice& device : devices)
+        device.device.memory().reset_peaks();
+    TraceRecord* const trace = devices.front().device.trace();
     RenderResult result;
     const RenderSettings settings = with_default_sky(job.scene, job.settings);
     result.settings = settings;
@@ -83,7 +136,6 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     check_aspect(settings, select_camera(job.scene, settings).aspect_ratio);
     result.needs = analyse_needs(job.scene, settings);
     const LayerPlanes planes = assign_planes(result.needs, wanted_layers(job.layers));
-    result.planes = planes;
     const PixelRect rect = crop_pixels(settings.crop, settings.width, settings.height);
     check_picture_memory(rect, job.layers, plane_count(planes));
 
@@ -91,14 +143,14 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     std::future<Bvh> building;
     if (job.bvh == nullptr)
         building = std::async(std::launch::async, [&] {
-            const TraceStep step(device.trace(), TraceCategory::host, "build BVH");
+            const TraceStep step(trace, TraceCategory::host, "build BVH");
             return build_bvh(job.scene, job.bvh_quality);
         });
     result.d_max = resolve_max_distance(settings.d_max, job.scene);
     result.radiometry = compute_radiometry(job.scene);
     check_ambient(job.scene, result.radiometry, settings);
     const Stopwatch compile_watch;
-    const StageKernels kernels = prepare_kernels(library, result.needs, job);
+    Team team(devices, job, result.needs, rect.pixel_count() * settings.spp, after_wave);
     result.seconds.compile = compile_watch.seconds();
     const SceneArrays arrays = make_scene_arrays(job.scene, settings.filter);
     const Bvh built = job.bvh == nullptr ? building.get() : Bvh();
@@ -106,28 +158,17 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
     result.seconds.build = bvh.build_seconds;
 
     const Stopwatch upload_watch;
-    const SceneBuffers scene = upload_scene(device, arrays, bvh);
-    const uint64_t max_allocation = device.info().max_allocation_bytes;
     const QueueShape shape = queue_shape(result.needs, settings, plane_count(planes));
-    result.shape = shape;
-    const std::vector<PixelRect> bands = film_bands(rect, shape.layer_planes, max_allocation);
-    const uint64_t sample_count = bands.front().pixel_count() * settings.spp;
-    result.wave_capacity = wave_capacity(shape, job.wave_size, job.queue_bytes, max_allocation, sample_count);
-    const auto largest_band = static_cast<uint32_t>(bands.front().pixel_count());
-    Queues queues =
-        allocate_queues(device, shape, result.wave_capacity, largest_band, bit_reversed_order(settings.spp));
+    const std::vector<PixelRect> bands = film_bands(rect, shape.layer_planes, smallest_allocation(devices));
+    const PieceSize piece = piece_size(static_cast<uint32_t>(bands.front().pixel_count()), settings.spp,
+                                       job.wave_size, devices.size());
+    team.upload(arrays, bvh, shape, piece);
     result.seconds.upload = upload_watch.seconds();
 
-    std::optional<VisitRecorder> visits;
-    if (job.count_visits)
-        visits.emplace(device, library, result.needs, settings.needs == NeedsMode::all, job.portable, scene);
-
     place_image(result.image, settings, rect);
+    add_layers(job.layers, result.image);
+    if (job.count_visits) result.nodes_per_sample.resize(rect.pixel_count());
     const Stopwatch render_watch;
-    Profiler profiler(device.name());
-    Scheduler scheduler(device, kernels, scene, queues, library.local_size(), profiler);
-    scheduler.observe(job.observer);
-    if (visits) scheduler.observe(std::bind_front(&VisitRecorder::observe, &*visits));
     const FrameInput input{job.scene,
                            settings,
                            result.radiometry,
@@ -136,42 +177,14 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
                            static_cast<uint32_t>(arrays.area_lights.size()),
                            static_cast<uint32_t>(arrays.point_lights.size()),
                            result.d_max};
-    const uint64_t all = rect.pixel_count() * settings.spp;
-    uint64_t samples_before = 0;
     result.samples_per_pixel = settings.spp;
     result.complete = after_wave(0, {});
-    for (const PixelRect& band : bands) {
-        const uint64_t band_samples = band.pixel_count() * settings.spp;
-        const auto report = [&](uint64_t done, const RayCounts& rays) {
-            const uint64_t finished = samples_before + done;
-            return after_wave(static_cast<double>(finished) / static_cast<double>(all), rays) ||
-                   finished == all;
-        };
-        const Frame frame = make_frame(input, band, result.wave_capacity);
-        const std::vector<uint32_t> pixel_order = tiled_pixel_order(band.width(), band.height());
-        queues.pixel_order.upload(pixel_order);
-        // Once stopped, the remaining bands stay black.
-        const uint64_t done = result.complete ? scheduler.render(frame, report) : 0;
-        result.complete = result.complete && done == band_samples;
-        const uint64_t passes = done / band.pixel_count();
-        result.samples_per_pixel = std::min(result.samples_per_pixel, static_cast<uint32_t>(passes));
-        std::vector<FilmSum> sums(band.pixel_count() * shape.layer_planes);
-        if (done > 0) queues.film.download(sums);
-        const TraceStep step(device.trace(), TraceCategory::host, "develop");
-        develop_band({planes, sums, pixel_order, passes, done % band.pixel_count()}, job.layers,
-                     result.image);
-        if (visits) visits->finish_band(pixel_order, passes, done % band.pixel_count());
-        samples_before += band_samples;
-    }
+    for (const PixelRect& band : bands)
+        render_band(team, input, band, rect, piece, trace, result);
     result.seconds.render = render_watch.seconds();
-    if (visits) {
-        result.visits = visits->visits();
-        result.seconds.render -= result.visits->seconds;
-    }
-    result.rays = scheduler.rays();
-    result.profile = profiler.rows();
-    result.bytes = peak_bytes(device);
-    describe(job, device.name(), result);
+    collect_work(team, planes, result);
+    if (result.visits) result.seconds.render -= result.visits->seconds;
+    describe(job, device_names(devices), result);
     return result;
 }
 

@@ -17,6 +17,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,28 +47,48 @@ struct RenderSeconds {
     double render = 0;
 };
 
-struct RenderResult {
-    Image image;  // its attributes are filled
-    RenderSeconds seconds;
+// What a device did for a render and what it took; the sums of several.
+struct DeviceWork {
     RayCounts rays;
     QueueShape shape;
     LayerPlanes planes{};
-    std::optional<RenderVisits> visits;
     std::map<std::string, StageProfile> profile;
-    Radiometry radiometry;
-    Needs needs;
-    RenderSettings settings;  // with the sky that was chosen
-    double d_max = 0;         // m
+    std::optional<RenderVisits> visits;
     uint32_t wave_capacity = 0;
-    bool complete = true;            // false: stopped early, pixels have fewer samples
-    uint32_t samples_per_pixel = 0;  // that every pixel has; some may have one more
     std::map<std::string, uint64_t>
         bytes;  // device memory at its peak during the render: scene bvh queues film peak_device
+};
+
+// Its work is that of all devices together.
+struct RenderResult : DeviceWork {
+    std::vector<DeviceWork> devices;  // in the order they were given in
+    Image image;                      // its attributes are filled
+    std::vector<float>
+        nodes_per_sample;  // with visits: nodes that all rays of a pixel visit; rows from the top
+    RenderSeconds seconds;
+    Radiometry radiometry;
+    Needs needs;
+    RenderSettings settings;         // with the sky that was chosen
+    double d_max = 0;                // m
+    bool complete = true;            // false: stopped early, pixels have fewer samples
+    uint32_t samples_per_pixel = 0;  // that every pixel has; some have more
 };
 
 // fraction: of the samples done, 0 before the first wave; false stops the render there.
 using RenderCallback = std::function<bool(double fraction, const RayCounts& rays)>;
 
+struct RenderDevice {
+    Device& device;
+    ProgramLibrary& library;
+};
+
+// "A, B"
+std::string device_names(std::span<const RenderDevice> devices);
+
+// Several devices share the work, each in a thread of its own; one does it in this thread. The callback is called by one
+// thread at a time. With several devices there is no observer.
+RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob& job,
+                          const RenderCallback& after_wave);
 RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJob& job,
                           const RenderCallback& after_wave);
 

@@ -54,23 +54,24 @@ void Scheduler::run_stages(StageTime time, const Work& work) {
     }
 }
 
-uint64_t Scheduler::render(const Frame& frame, const WaveCallback& after_wave) {
+uint64_t Scheduler::render(const Frame& frame, uint32_t first_pass, uint32_t pass_count,
+                           const WaveCallback& after_wave) {
     queues_.frame.upload(std::span(&frame, 1));
-    queues_.film.clear();
     const uint32_t pixels = frame.crop.z;
     uint64_t done = 0;
     for (uint64_t index = 0;; ++index) {
-        const Wave wave = wave_at(index, frame.crop.w, pixels, frame.sampling.x);
+        Wave wave = wave_at(index, frame.crop.w, pixels, pass_count);
         if (wave.count == 0) break;
-        run_wave(frame, wave, index);
+        wave.first_pass += first_pass;
+        run_wave(frame, wave);
         done += wave.count;
         if (!after_wave(done, rays_)) break;
     }
     return done;
 }
 
-void Scheduler::run_wave(const Frame& frame, const Wave& wave, uint64_t index) {
-    const TraceStep step(device_.trace(), TraceCategory::host, "wave", {"number", index});
+void Scheduler::run_wave(const Frame& frame, const Wave& wave) {
+    const TraceStep step(device_.trace(), TraceCategory::host, "wave", {"number", wave_count_++});
     const Work samples{.first_pixel = wave.first_pixel,
                        .first_pass = wave.first_pass,
                        .count = wave.count,

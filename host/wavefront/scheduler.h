@@ -21,9 +21,16 @@ namespace obscura {
 struct RayCounts {
     uint64_t camera = 0, shadow = 0, glossy = 0, obscurance = 0;
     uint64_t total() const { return camera + shadow + glossy + obscurance; }
+    RayCounts& operator+=(const RayCounts& other) {
+        camera += other.camera;
+        shadow += other.shadow;
+        glossy += other.glossy;
+        obscurance += other.obscurance;
+        return *this;
+    }
 };
 
-// Called after each wave with the samples finished so far and the rays traced; false stops the render there.
+// Called after each wave with the samples that render() has finished and all rays traced so far; false stops it there.
 using WaveCallback = std::function<bool(uint64_t samples_done, const RayCounts& rays)>;
 
 // One depth of a wave, seen after its kernels ran: queues.rays still holds its rays with their hits.
@@ -44,15 +51,16 @@ class Scheduler {
     Scheduler(Device& device, const StageKernels& kernels, const SceneBuffers& scene, Queues& queues,
               uint32_t local_size, Profiler& profiler);
 
-    // Renders the frame's pixels into queues.film, which holds their sums afterwards. Returns the samples done: all, or
-    // fewer if after_wave stopped it. Throws DeviceError when a kernel reports a failure.
-    uint64_t render(const Frame& frame, const WaveCallback& after_wave);
+    // Adds these passes over the frame's pixels to the sums in queues.film, which are those of the passes before. Returns the
+    // samples done: all, or fewer if after_wave stopped it. Throws DeviceError when a kernel reports a failure.
+    uint64_t render(const Frame& frame, uint32_t first_pass, uint32_t pass_count,
+                    const WaveCallback& after_wave);
 
     const RayCounts& rays() const { return rays_; }
     void observe(DepthObserver observer) { observer_ = std::move(observer); }
 
   private:
-    void run_wave(const Frame& frame, const Wave& wave, uint64_t index);
+    void run_wave(const Frame& frame, const Wave& wave);
     // One depth of a wave's paths; the number of rays that go on.
     uint32_t run_depth(const Frame& frame, const Work& work);
     DeviceStatus read_status() const;  // waits for the device; throws DeviceError when a kernel has failed
@@ -68,6 +76,7 @@ class Scheduler {
     Profiler& profiler_;
     DepthObserver observer_;
     RayCounts rays_;
+    uint64_t wave_count_ = 0;
 };
 
 }  // namespace obscura

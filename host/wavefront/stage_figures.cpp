@@ -30,7 +30,7 @@ const RayVisits* visits_of(std::string_view row, const RenderVisits& visits) {
 // once, and that part of an item which ends early isn't left out.
 class LaneCount {
   public:
-    explicit LaneCount(const RenderResult& result) : result_(result) {}
+    explicit LaneCount(const DeviceWork& result) : result_(result) {}
 
     uint64_t of(Stage stage, uint64_t items) const {
         const QueueShape& shape = result_.shape;
@@ -82,7 +82,7 @@ class LaneCount {
         return 2 * items * static_cast<uint64_t>(std::ranges::count_if(layers, is_kept));
     }
 
-    const RenderResult& result_;
+    const DeviceWork& result_;
 };
 
 // A work item of the stage obscurance has K rays.
@@ -95,7 +95,7 @@ double over(double a, double b) {
 }
 
 // All but what bounds it.
-StageFigures measured_figures(const StageInfo& info, const std::string& name, const RenderResult& result,
+StageFigures measured_figures(const StageInfo& info, const std::string& name, const DeviceWork& result,
                               const DeviceRates& rates) {
     StageFigures figures;
     figures.row = name;
@@ -150,7 +150,7 @@ std::string bound_text(const StageFigures& figures, uint64_t bvh_bytes, const De
                        figures.visits_per_ray, 100 * visit_share, core_ns);
 }
 
-std::vector<StageFigures> stage_figures(const RenderResult& result, const DeviceRates& rates) {
+std::vector<StageFigures> stage_figures(const DeviceWork& result, const DeviceRates& rates) {
     OBSCURA_CHECK(result.visits, "visits were not counted");
     std::vector<StageFigures> rows;
     for (const StageInfo& info : STAGES) {

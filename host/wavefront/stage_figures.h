@@ -29,6 +29,6 @@ struct StageFigures {
 std::string bound_text(const StageFigures& figures, uint64_t bvh_bytes, const DeviceRates& rates);
 
 // In the order of the stages. result.visits must be there.
-std::vector<StageFigures> stage_figures(const RenderResult& result, const DeviceRates& rates);
+std::vector<StageFigures> stage_figures(const DeviceWork& result, const DeviceRates& rates);
 
 }  // namespace obscura

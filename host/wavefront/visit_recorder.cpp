@@ -22,6 +22,12 @@ void count(RayVisits::Histogram& histogram, uint32_t value) {
     ++histogram[value];
 }
 
+void add_up(RayVisits::Histogram& histogram, const RayVisits::Histogram& other) {
+    histogram.resize(std::max(histogram.size(), other.size()));
+    for (size_t n = 0; n < other.size(); ++n)
+        histogram[n] += other[n];
+}
+
 }  // namespace
 
 void RayVisits::add(uint32_t node_count, uint32_t block_count, uint32_t stack_entries) {
@@ -31,6 +37,13 @@ void RayVisits::add(uint32_t node_count, uint32_t block_count, uint32_t stack_en
     count(stack, stack_entries);
 }
 
+void RayVisits::add(const RayVisits& other) {
+    rays += other.rays;
+    add_up(nodes, other.nodes);
+    add_up(blocks, other.blocks);
+    add_up(stack, other.stack);
+}
+
 double mean(const RayVisits::Histogram& histogram) {
     double sum = 0, rays = 0;
     for (size_t n = 0; n < histogram.size(); ++n) {
@@ -38,6 +51,16 @@ double mean(const RayVisits::Histogram& histogram) {
         sum += static_cast<double>(n) * static_cast<double>(histogram[n]);
     }
     return rays > 0 ? sum / rays : 0;
+}
+
+void average_nodes(const PixelNodes& pixel_nodes, std::span<const uint32_t> pixel_order, uint64_t passes,
+                   uint64_t pixels_ahead, std::span<float> nodes_per_sample) {
+    for (size_t place = 0; place < pixel_order.size(); ++place) {
+        const uint32_t pixel = pixel_order[place];
+        const uint64_t samples = passes + (place < pixels_ahead ? 1 : 0);
+        const auto nodes = static_cast<double>(pixel_nodes[pixel]);
+        if (samples > 0) nodes_per_sample[pixel] = static_cast<float>(nodes / static_cast<double>(samples));
+    }
 }
 
 VisitRecorder::VisitRecorder(Device& device, ProgramLibrary& library, const Needs& needs, bool all,
@@ -52,10 +75,9 @@ VisitRecorder::VisitRecorder(Device& device, ProgramLibrary& library, const Need
     if (needs.obscurance) obscurance_ = kernel(Stage::obscurance);
 }
 
-void VisitRecorder::observe(const DepthView& view, const Frame& frame, const Queues& queues) {
+void VisitRecorder::observe(const DepthView& view, const Frame&, const Queues& queues) {
     const TraceStep step(device_.trace(), TraceCategory::host, "count visits");
     const Stopwatch watch;
-    if (pixel_nodes_.empty()) pixel_nodes_.resize(frame.crop.z);
     const uint64_t ray_count = uint64_t{view.point_count} * queues.shape.obscurance_rays;
     const uint64_t most = std::max({uint64_t{view.ray_count}, uint64_t{view.shadow_count}, ray_count});
     if (counts_.bytes() < most * sizeof(u32x4))
@@ -84,23 +106,8 @@ void VisitRecorder::add(size_t queue, uint64_t ray_count) {
     counts_.download(counts);
     for (const u32x4& ray : counts) {
         visits_.queues[queue].add(ray.x, ray.y, ray.z);
-        pixel_nodes_.at(ray.w) += ray.x;
+        pixel_nodes_->at(ray.w) += ray.x;
     }
-}
-
-void VisitRecorder::finish_band(std::span<const uint32_t> pixel_order, uint64_t samples,
-                                uint64_t pixels_ahead) {
-    pixel_nodes_.resize(pixel_order.size());
-    const size_t start = visits_.nodes_per_sample.size();
-    visits_.nodes_per_sample.resize(start + pixel_order.size());
-    for (size_t place = 0; place < pixel_order.size(); ++place) {
-        const uint32_t pixel = pixel_order[place];
-        const uint64_t n = samples + (place < pixels_ahead ? 1 : 0);
-        const auto nodes = static_cast<double>(pixel_nodes_[pixel]);
-        if (n > 0)
-            visits_.nodes_per_sample[start + pixel] = static_cast<float>(nodes / static_cast<double>(n));
-    }
-    pixel_nodes_.clear();
 }
 
 }  // namespace obscura

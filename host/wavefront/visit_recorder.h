@@ -25,6 +25,7 @@ struct RayVisits {
     Histogram stack;  // the most entries at once
 
     void add(uint32_t node_count, uint32_t block_count, uint32_t stack_entries);
+    void add(const RayVisits& other);
 };
 
 double mean(const RayVisits::Histogram& histogram);
@@ -34,10 +35,16 @@ constexpr std::array<std::string_view, 4> RAY_QUEUES{"camera", "shadow", "glossy
 
 struct RenderVisits {
     std::array<RayVisits, RAY_QUEUES.size()> queues;
-    // Nodes that all rays of a pixel visit, per sample; rows from the top of the rendered part.
-    std::vector<float> nodes_per_sample;
     double seconds = 0;  // that the counting took, beside the render
 };
+
+// Nodes that all rays of a pixel visit; pixels of a band in rows.
+using PixelNodes = std::vector<uint64_t>;
+
+// Per sample, of those pixels: as many of each as its range has passes, one more of the first pixels_ahead. Both arrays of
+// numbers are in the order of rows that pixel_order counts in.
+void average_nodes(const PixelNodes& pixel_nodes, std::span<const uint32_t> pixel_order, uint64_t passes,
+                   uint64_t pixels_ahead, std::span<float> nodes_per_sample);
 
 class VisitRecorder {
   public:
@@ -45,11 +52,11 @@ class VisitRecorder {
     VisitRecorder(Device& device, ProgramLibrary& library, const Needs& needs, bool all, bool portable,
                   const SceneBuffers& scene);
 
+    // Those of the pixels of the next pieces, which must live until then. Several devices may share them: a pixel is in one
+    // hand at a time.
+    void count_into(PixelNodes& pixel_nodes) { pixel_nodes_ = &pixel_nodes; }
     // A DepthObserver: counts the rays of the depth.
     void observe(const DepthView& view, const Frame& frame, const Queues& queues);
-    // When the pixels of a band have this many samples, the first pixels_ahead of pixel_order one more. Bands come from the
-    // top down.
-    void finish_band(std::span<const uint32_t> pixel_order, uint64_t samples, uint64_t pixels_ahead);
 
     const RenderVisits& visits() const { return visits_; }
 
@@ -60,8 +67,8 @@ class VisitRecorder {
     uint32_t local_size_;
     const SceneBuffers& scene_;
     cl::Kernel trace_, shadow_, obscurance_;
-    Buffer counts_;                      // of the rays of one launch
-    std::vector<uint64_t> pixel_nodes_;  // of the band in hand
+    Buffer counts_;  // of the rays of one launch
+    PixelNodes* pixel_nodes_ = nullptr;
     RenderVisits visits_;
 };
 

@@ -57,9 +57,9 @@ TEST_F(VisitRecorderTest, NodesOfThePixelsAreThoseOfTheRays) {
     double of_rays = 0, of_pixels = 0;
     for (const RayVisits& queue : result.visits->queues)
         of_rays += mean(queue.nodes) * static_cast<double>(queue.rays);
-    for (const float nodes : result.visits->nodes_per_sample)
+    for (const float nodes : result.nodes_per_sample)
         of_pixels += 4.0 * static_cast<double>(nodes);
-    EXPECT_EQ(result.visits->nodes_per_sample.size(), 24u * 18);
+    EXPECT_EQ(result.nodes_per_sample.size(), 24u * 18);
     EXPECT_NEAR(of_pixels / of_rays, 1, 1e-5);
 }
 
@@ -93,7 +93,7 @@ TEST_F(VisitRecorderTest, DearPixelsAreWhereTheTrianglesAre) {
     const RenderResult result = render_counted(builder.finish(), settings);
     double left = 0, right = 0;
     for (uint32_t i = 0; i < 32 * 16; ++i)
-        (i % 32 < 16 ? left : right) += static_cast<double>(result.visits->nodes_per_sample[i]);
+        (i % 32 < 16 ? left : right) += static_cast<double>(result.nodes_per_sample[i]);
     EXPECT_GT(left, 1.5 * right);
 }
 

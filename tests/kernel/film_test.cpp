@@ -209,6 +209,8 @@ TEST_F(FilmStage, ManySamplesKeepTheirMeanAndVariance) {
     }
 
     Image image;
+    image.x1 = image.y1 = 1;
+    add_layers(std::vector<std::string>{"emission", "Variance"}, image);
     FilmSums sums{};
     std::copy_n(planes, LAYER_COUNT, sums.planes.begin());
     const std::vector<FilmSum> found = film.contents<FilmSum>();
@@ -216,7 +218,7 @@ TEST_F(FilmStage, ManySamplesKeepTheirMeanAndVariance) {
     const std::vector<uint32_t> order{0};
     sums.pixel_order = order;
     sums.samples = uint64_t{SLOTS} * WAVES;
-    develop_band(sums, std::vector<std::string>{"emission", "Variance"}, image);
+    develop(sums, image);
     const std::vector<float>& emission = image.layers.at(1).pixels;
     EXPECT_NEAR(static_cast<double>(emission.at(0)), mean, 1e-6 * mean);
     EXPECT_EQ(emission.at(1), 1);

@@ -5,11 +5,21 @@
 
 #include <gtest/gtest.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
 namespace obscura {
 namespace {
+
+// One pixel wide, with the layer emission.
+Image black_column(int32_t height) {
+    Image image;
+    image.x1 = 1;
+    image.y1 = height;
+    add_layers(std::vector<std::string>{"emission"}, image);
+    return image;
+}
 
 // Three pixels, visited as 2, 0, 1, of which the first has a sample more than the others.
 TEST(Develop, PutsSumsWhereTheirPixelsAreAndCountsTheirSamples) {
@@ -18,27 +28,27 @@ TEST(Develop, PutsSumsWhereTheirPixelsAreAndCountsTheirSamples) {
     FilmSums film{.planes = {}, .sums = sums, .pixel_order = order, .samples = 2, .pixels_ahead = 1};
     film.planes.fill(NO_PLANE);
     film.planes[LAYER_EMISSION] = 0;
-    Image image;
-    const std::vector<std::string> wanted{"emission"};
-    develop_band(film, wanted, image);
+    Image image = black_column(3);
+    develop(film, image);
     EXPECT_EQ(image.layers[0].pixels, (std::vector<float>{2, 1, 4, 1, 5, 0, 0.5f, 0, 2, 3, 4, 1}));
     EXPECT_EQ(image.layers[1].pixels, (std::vector<float>{2, 1, 4, 5, 0, 0.5f, 2, 3, 4}));
 }
 
-TEST(Develop, AppendsBandsBelowOneAnother) {
+// A picture of two bands. Of the upper one only half of the pixels have been rendered.
+TEST(Develop, PutsPartsOfBandsWhereTheyBelongAndLeavesTheRestBlack) {
     const std::vector<FilmSum> upper{{{1, 1, 1, 1}, {}}, {{2, 2, 2, 1}, {}}};
     const std::vector<FilmSum> lower{{{3, 3, 3, 1}, {}}};
-    const std::vector<uint32_t> two{1, 0}, one{0};
-    FilmSums film{.planes = {}, .sums = upper, .pixel_order = two, .samples = 1};
+    const std::vector<uint32_t> upper_order{3, 1, 0, 2}, lower_order{0};
+    FilmSums film{.planes = {}, .sums = upper, .pixel_order = std::span(upper_order).first(2), .samples = 1};
     film.planes.fill(NO_PLANE);
     film.planes[LAYER_EMISSION] = 0;
-    Image image;
-    const std::vector<std::string> wanted{"emission"};
-    develop_band(film, wanted, image);
+    Image image = black_column(5);
+    develop(film, image);
     film.sums = lower;
-    film.pixel_order = one;
-    develop_band(film, wanted, image);
-    EXPECT_EQ(image.layers[1].pixels, (std::vector<float>{2, 2, 2, 1, 1, 1, 3, 3, 3}));
+    film.pixel_order = lower_order;
+    film.first_pixel = 4;
+    develop(film, image);
+    EXPECT_EQ(image.layers[1].pixels, (std::vector<float>{0, 0, 0, 2, 2, 2, 0, 0, 0, 1, 1, 1, 3, 3, 3}));
 }
 
 }  // namespace

@@ -115,6 +115,74 @@ TEST(DeviceSelector, NoRowsAtAllGivesDeviceError) {
     EXPECT_NE(message_of<DeviceError>({}, "").find("no OpenCL device"), std::string::npos);
 }
 
+// The sample devices, the processor with eight compute units that can be split.
+std::vector<DeviceInfo> splittable_devices() {
+    std::vector<DeviceInfo> devices = sample_devices();
+    devices[3].compute_units = devices[3].max_sub_devices = 8;
+    return devices;
+}
+
+std::string list_message(std::string_view selector) {
+    try {
+        select_devices(splittable_devices(), selector);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no such exception";
+}
+
+using Choices = std::vector<DeviceChoice>;
+
+TEST(DeviceList, OneSelectorGivesOneDevice) {
+    EXPECT_EQ(select_devices(splittable_devices(), ""), (Choices{{3, 1}}));
+    EXPECT_EQ(select_devices(splittable_devices(), "mini"), (Choices{{1, 1}}));
+}
+
+TEST(DeviceList, CommasSeparateDevicesInTheirOrder) {
+    EXPECT_EQ(select_devices(splittable_devices(), "pocl,0"), (Choices{{3, 1}, {0, 1}}));
+    EXPECT_EQ(select_devices(splittable_devices(), "0:1, 0:0 ,2"), (Choices{{1, 1}, {0, 1}, {3, 1}}));
+}
+
+TEST(DeviceList, SlashGivesTheNumberOfSubDevices) {
+    EXPECT_EQ(select_devices(splittable_devices(), "pocl/8"), (Choices{{3, 8}}));
+    EXPECT_EQ(select_devices(splittable_devices(), "mini,2:0/3"), (Choices{{1, 1}, {3, 3}}));
+    EXPECT_EQ(select_devices(splittable_devices(), "mini/1"), (Choices{{1, 1}}));
+}
+
+TEST(DeviceList, NamesMayHoldCommasAndSlashes) {
+    std::vector<DeviceInfo> devices = splittable_devices();
+    devices[0].name = "Radiant 9000 / 9100/2 (wide, 8 lanes)";
+    for (const char* selector : {"9100/2", "wide, 8", "9000 / 9100/2 (wide, 8 lanes)"})
+        EXPECT_EQ(select_devices(devices, selector), (Choices{{0, 1}})) << selector;
+    EXPECT_EQ(select_devices(devices, "pocl,9100/2"), (Choices{{3, 1}, {0, 1}}));
+}
+
+TEST(DeviceList, ImpossibleSplitsAreRefused) {
+    EXPECT_NE(list_message("mini/2").find("Radiant 9000 Mini can't be split"), std::string::npos);
+    EXPECT_NE(list_message("pocl/9").find("8 compute units, which make at most 8 sub-devices"),
+              std::string::npos);
+    for (const char* selector : {"pocl/0", "pocl/-1", "pocl/", "pocl/x", "pocl/1.5", "pocl/99999999999"})
+        EXPECT_NE(list_message(selector).find("number of sub-devices, 1 or more"), std::string::npos)
+            << selector;
+}
+
+TEST(DeviceList, DevicesMeantTwiceAreRefused) {
+    for (const char* selector : {"pocl,2", "0,pocl,2:0", "pocl/2,pocl", "pocl,pocl/2"}) {
+        const std::string message = list_message(selector);
+        EXPECT_NE(message.find("means a device twice"), std::string::npos) << message;
+        EXPECT_NE(message.find("pthread-haswell"), std::string::npos) << message;
+    }
+}
+
+TEST(DeviceList, EveryEntryMeansADevice) {
+    for (const char* selector : {",", "pocl,", ",pocl", "pocl, ,0"})
+        EXPECT_NE(list_message(selector).find("an entry of the list is empty"), std::string::npos)
+            << selector;
+    EXPECT_NE(list_message("pocl,quantum").find("matches \"quantum\""), std::string::npos);
+    EXPECT_NE(list_message("radiant/2").find("Several OpenCL devices match \"radiant\""), std::string::npos);
+    EXPECT_NE(list_message("pocl,accelerator").find("no compiler"), std::string::npos);
+}
+
 TEST(DeviceErrors, CodesHaveTheirNames) {
     EXPECT_EQ(error_name(-5), "CL_OUT_OF_RESOURCES");
     EXPECT_EQ(error_name(-1001), "CL_PLATFORM_NOT_FOUND_KHR");
