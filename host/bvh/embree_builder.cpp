@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "bvh/clip.h"
 #include "bvh/parts.h"
+#include "bvh/split_bounds.h"
 
 #include <embree3/rtcore.h>
 #include <tbb/parallel_for.h>
