@@ -21,20 +21,19 @@
 namespace obscura {
 namespace {
 
-StageKernels prepare_kernels(ProgramLibrary& library, const Needs& needs, const RenderJob& job) {
-    const bool all = job.settings.needs == NeedsMode::all;
+StageKernels prepare_kernels(ProgramLibrary& library, const RenderSetup& setup, bool portable) {
+    const bool all = setup.settings.needs == NeedsMode::all;
     std::vector<KernelRequest> requests;
-    const std::vector<Stage> stages = needed_stages(needs);
+    const std::vector<Stage> stages = needed_stages(setup.needs);
     requests.reserve(stages.size());
     for (const Stage stage : stages) {
         requests.push_back(
-            {std::string(stage_info(stage).name), stage_options(stage, needs, all, job.portable)});
+            {std::string(stage_info(stage).name), stage_options(stage, setup.needs, all, portable)});
     }
-    library.prepare(requests);
+    const std::vector<cl::Kernel> built = library.kernels(requests);
     StageKernels kernels;
-    for (size_t i = 0; i < stages.size(); ++i) {
-        kernels[static_cast<uint32_t>(stages[i])] = library.kernel(requests[i]);
-    }
+    for (size_t i = 0; i < stages.size(); ++i)
+        kernels[static_cast<uint32_t>(stages[i])] = built[i];
     return kernels;
 }
 
@@ -73,36 +72,49 @@ std::map<std::string, uint64_t> peak_bytes(const Device& device) {
 
 }  // namespace
 
+RenderSetup set_up_render(const RenderJob& job) {
+    RenderSetup setup;
+    setup.settings = with_default_sky(job.scene, job.settings);
+    check_aspect(setup.settings, select_camera(job.scene, setup.settings).aspect_ratio);
+    setup.needs = analyse_needs(job.scene, setup.settings);
+    setup.planes = assign_planes(setup.needs, wanted_layers(job.layers));
+    setup.rect = crop_pixels(setup.settings.crop, setup.settings.width, setup.settings.height);
+    check_picture_memory(setup.rect, job.layers, plane_count(setup.planes));
+    return setup;
+}
+
+std::shared_future<Bvh> start_building(const RenderJob& job, TraceRecord* trace) {
+    return std::async(std::launch::async, [&scene = job.scene, quality = job.bvh_quality, trace] {
+        const TraceStep step(trace, TraceCategory::host, "build BVH");
+        return build_bvh(scene, quality);
+    });
+}
+
 RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJob& job,
                           const RenderCallback& after_wave) {
+    return render_scene(device, library, job, set_up_render(job), after_wave);
+}
+
+RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJob& job,
+                          const RenderSetup& setup, const RenderCallback& after_wave) {
     device.memory().reset_peaks();
     RenderResult result;
-    const RenderSettings settings = with_default_sky(job.scene, job.settings);
+    const RenderSettings& settings = setup.settings;
+    const LayerPlanes& planes = setup.planes;
+    const PixelRect& rect = setup.rect;
     result.settings = settings;
-    // An unknown camera is an error before any work is done, and so is a picture that doesn't fit.
-    check_aspect(settings, select_camera(job.scene, settings).aspect_ratio);
-    result.needs = analyse_needs(job.scene, settings);
-    const LayerPlanes planes = assign_planes(result.needs, wanted_layers(job.layers));
+    result.needs = setup.needs;
     result.planes = planes;
-    const PixelRect rect = crop_pixels(settings.crop, settings.width, settings.height);
-    check_picture_memory(rect, job.layers, plane_count(planes));
-
     // The builder works on one core, everything up to the upload on another.
-    std::future<Bvh> building;
-    if (job.bvh == nullptr)
-        building = std::async(std::launch::async, [&] {
-            const TraceStep step(device.trace(), TraceCategory::host, "build BVH");
-            return build_bvh(job.scene, job.bvh_quality);
-        });
+    const std::shared_future<Bvh> building = job.bvh.valid() ? job.bvh : start_building(job, device.trace());
     result.d_max = resolve_max_distance(settings.d_max, job.scene);
     result.radiometry = compute_radiometry(job.scene);
     check_ambient(job.scene, result.radiometry, settings);
     const Stopwatch compile_watch;
-    const StageKernels kernels = prepare_kernels(library, result.needs, job);
+    const StageKernels kernels = prepare_kernels(library, setup, job.portable);
     result.seconds.compile = compile_watch.seconds();
     const SceneArrays arrays = make_scene_arrays(job.scene, settings.filter);
-    const Bvh built = job.bvh == nullptr ? building.get() : Bvh();
-    const Bvh& bvh = job.bvh == nullptr ? built : *job.bvh;
+    const Bvh& bvh = building.get();
     result.seconds.build = bvh.build_seconds;
 
     const Stopwatch upload_watch;
