@@ -74,16 +74,21 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
+// Commas and slashes of a name are its own.
+bool is_part_of_a_name(std::span<const DeviceInfo> devices, std::string_view text) {
+    return std::ranges::any_of(
+        devices, [&](const DeviceInfo& info) { return contains_ignoring_case(info.name, text); });
+}
+
 // SELECTOR or SELECTOR/N.
 DeviceChoice select_choice(std::span<const DeviceInfo> devices, std::string_view entry) {
     const size_t slash = entry.rfind('/');
-    if (slash == std::string_view::npos || !matches(devices, entry).empty())
+    if (slash == std::string_view::npos || is_part_of_a_name(devices, entry))
         return {select_device(devices, entry), 1};
     const auto parts = parse_index(entry.substr(slash + 1));
-    if (!parts || *parts < 1)
+    if (!parts || *parts < 1 || slash == 0)
         throw InputError(
-            "\"{}\": no device is called so, and behind a / stands a number of sub-devices, 1 or more",
-            entry);
+            "\"{}\": no device is called so; SELECTOR/N splits one into N sub-devices, 1 or more", entry);
     const int position = select_device(devices, entry.substr(0, slash));
     const DeviceInfo& info = devices[static_cast<size_t>(position)];
     const auto count = static_cast<uint32_t>(*parts);
@@ -131,7 +136,7 @@ int select_device(std::span<const DeviceInfo> devices, std::string_view selector
 }
 
 std::vector<DeviceChoice> select_devices(std::span<const DeviceInfo> devices, std::string_view selector) {
-    if (selector.empty() || !matches(devices, selector).empty())
+    if (selector.empty() || is_part_of_a_name(devices, selector))
         return {{select_device(devices, selector), 1}};
     std::vector<DeviceChoice> choices;
     for (size_t start = 0; start <= selector.size();) {

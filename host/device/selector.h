@@ -51,7 +51,7 @@ struct DeviceChoice {
 };
 
 // The same for several devices: selectors separated by commas, each with /N behind it where the device is to be split into N
-// sub-devices. A part of a name may hold commas and slashes of its own. Throws InputError too if a device can't be split so,
+// sub-devices. A part of a device's name may hold commas and slashes. Throws InputError too if a device can't be split so,
 // or is meant twice.
 std::vector<DeviceChoice> select_devices(std::span<const DeviceInfo> devices, std::string_view selector);
 

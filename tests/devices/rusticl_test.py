@@ -43,17 +43,29 @@ class Rusticl(unittest.TestCase):
         self.assertEqual(0, done.returncode, done.stdout + done.stderr)
         self.assertEqual(0, json.loads(done.stdout)["device_wrong"])
 
+    def assert_differs_little(self, scene, *arguments):
+        """A render with these arguments from one on the default device."""
+        with self.subTest(scene), tempfile.TemporaryDirectory() as folder:
+            pictures = [pathlib.Path(folder) / f"{name}.exr" for name in ("other", "default")]
+            for picture, more in zip(pictures, (arguments, [])):
+                done = run("render", ROOT / "scenes" / scene, "-o", picture, *RENDER, *more)
+                self.assertEqual(0, done.returncode, done.stderr)
+            difference = json.loads(run("compare", *pictures, "--json", "-").stdout)
+            self.assertEqual(0, difference["not_finite"])
+            self.assertLessEqual(difference["differing_pixels"], 0.02 * difference["pixels"])
+            self.assertLess(abs(difference["bias"]), 1e-3)
+
     def test_small_renders_differ_little(self):
         for scene in ("cornell", "planes", "wall", "sphere", "furnace"):
-            with self.subTest(scene), tempfile.TemporaryDirectory() as folder:
-                pictures = [pathlib.Path(folder) / f"{name}.exr" for name in ("rusticl", "default")]
-                for picture, device in zip(pictures, (["--device", self.device], [])):
-                    done = run("render", ROOT / "scenes" / scene, "-o", picture, *RENDER, *device)
-                    self.assertEqual(0, done.returncode, done.stderr)
-                difference = json.loads(run("compare", *pictures, "--json", "-").stdout)
-                self.assertEqual(0, difference["not_finite"])
-                self.assertLessEqual(difference["differing_pixels"], 0.02 * difference["pixels"])
-                self.assertLess(abs(difference["bias"]), 1e-3)
+            self.assert_differs_little(scene, "--device", self.device)
+
+    def test_render_shared_with_the_default_device_differs_little(self):
+        with tempfile.TemporaryDirectory() as folder:
+            stats = pathlib.Path(folder) / "stats.json"
+            default = devices()["default"]
+            self.assert_differs_little("cornell", "--device", f"{default},{self.device}", "--wave-size", "64", "--stats", stats)
+            rows = json.loads(stats.read_text(encoding="utf-8"))["devices"]
+        self.assertEqual([True, True], [row["rays"]["camera"] > 0 for row in rows])
 
 
 if __name__ == "__main__":
