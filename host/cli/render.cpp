@@ -55,7 +55,7 @@ std::vector<std::string> resolve_layers(std::vector<std::string> wanted) {
     return layers;
 }
 
-// What the other thread prepares while the device is opened.
+// What the other thread prepares while the devices are opened.
 struct Input {
     std::unique_ptr<const Scene> scene;
     RenderJob job;
@@ -95,7 +95,7 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
         no_device = std::current_exception();
         has_no_device = true;
     }
-    Input input = reading.get();  // what is wrong with the scene is told first
+    const Input input = reading.get();  // what is wrong with the scene is told first
     if (no_device) std::rethrow_exception(no_device);
     const Scene& scene = *input.scene;
     std::vector<std::unique_ptr<ProgramLibrary>> libraries;

@@ -109,6 +109,13 @@ uint64_t smallest_allocation(std::span<const RenderDevice> devices) {
 
 }  // namespace
 
+std::string device_names(std::span<const RenderDevice> devices) {
+    std::vector<std::string> names;
+    for (const RenderDevice& device : devices)
+        names.push_back(device.device.name());
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
 RenderSetup set_up_render(const RenderJob& job) {
     RenderSetup setup;
     setup.settings = with_default_sky(job.scene, job.settings);
@@ -125,13 +132,6 @@ std::shared_future<Bvh> start_building(const RenderJob& job, TraceRecord* trace)
         const TraceStep step(trace, TraceCategory::host, "build BVH");
         return build_bvh(scene, quality);
     });
-}
-
-std::string device_names(std::span<const RenderDevice> devices) {
-    std::vector<std::string> names;
-    for (const RenderDevice& device : devices)
-        names.push_back(device.device.name());
-    return fmt::format("{}", fmt::join(names, ", "));
 }
 
 RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJob& job,
@@ -158,6 +158,7 @@ RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob
     const PixelRect& rect = setup.rect;
     result.settings = settings;
     result.needs = setup.needs;
+
     // The builder works on one core, everything up to the upload on another.
     const std::shared_future<Bvh> building = job.bvh.valid() ? job.bvh : start_building(job, trace);
     result.d_max = resolve_max_distance(settings.d_max, job.scene);

@@ -36,7 +36,7 @@ struct RenderJob {
     bool portable = false;  // kernels without instructions of one processor
     BvhQuality bvh_quality = BvhQuality::high;
     DepthObserver observer = {};       // optional
-    std::shared_future<Bvh> bvh = {};  // of the scene, if it is built already or being built
+    std::shared_future<Bvh> bvh = {};  // of the scene, built or being built; built here if there is none
     bool count_visits = false;         // fills RenderResult::visits, in about the time of another render
 };
 
@@ -103,10 +103,10 @@ std::string device_names(std::span<const RenderDevice> devices);
 // Several devices share the work, each in a thread of its own; one does it in this thread. The callback is called by one
 // thread at a time. With several devices there is no observer.
 RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob& job,
-                          const RenderSetup& setup, const RenderCallback& after_wave);
-// The same for a job that isn't set up yet.
-RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob& job,
                           const RenderCallback& after_wave);
+// The same for a job that was set up earlier.
+RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob& job,
+                          const RenderSetup& setup, const RenderCallback& after_wave);
 RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJob& job,
                           const RenderCallback& after_wave);
 
