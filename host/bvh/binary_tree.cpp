@@ -13,43 +13,79 @@ V3f center(const Box3f& box) {
     return box.min * 0.5F + box.max * 0.5F;
 }
 
-void sort_by_center(Reference* references, uint32_t count, int axis) {
-    std::sort(references, references + count, [axis](const Reference& a, const Reference& b) {
-        const float center_a = center(a.bounds)[axis];
-        const float center_b = center(b.bounds)[axis];
-        return center_a < center_b || (center_a == center_b && a.triangle < b.triangle);
-    });
-}
+// What stands for a reference while a set is cut: quicker to sort.
+struct Key {
+    float center;  // along the axis in hand
+    uint32_t triangle;
+    uint32_t index;  // of the reference within the set
 
-// Appends nodes for references[first .. first + count). cut(references, count) orders them and says how many
-// go to the first child.
+    bool operator<(const Key& other) const {
+        return center < other.center || (center == other.center && triangle < other.triangle);
+    }
+};
+
+// A set of references that is being cut, and its keys, in the order of the last sort.
+class Set {
+  public:
+    Set(Reference* references, uint32_t count) : references_(references), keys_(count) {
+        for (uint32_t i = 0; i < count; ++i)
+            keys_[i] = {0, references[i].triangle, i};
+    }
+
+    uint32_t count() const { return static_cast<uint32_t>(keys_.size()); }
+    const Box3f& bounds(uint32_t i) const { return references_[keys_[i].index].bounds; }
+
+    void sort_by_center(int axis) {
+        for (Key& key : keys_) {
+            const Box3f& box = references_[key.index].bounds;
+            key.center = box.min[axis] * 0.5F + box.max[axis] * 0.5F;
+        }
+        std::sort(keys_.begin(), keys_.end());
+    }
+
+    // Brings the references themselves into the order of the keys.
+    void reorder() {
+        const std::vector<Reference> before(references_, references_ + keys_.size());
+        for (size_t i = 0; i < keys_.size(); ++i)
+            references_[i] = before[keys_[i].index];
+    }
+
+  private:
+    Reference* references_;
+    std::vector<Key> keys_;
+};
+
+// Fills the nodes of a set from an index on. cut(set) sorts it and says how many go to the first child.
 template <typename Cut>
-void append_subtree(BinaryTree& tree, uint32_t first, uint32_t count, const Cut& cut) {
-    const size_t index = tree.nodes.size();
-    tree.nodes.push_back({Box3f(), first, count, 0});
+void fill_subtree(BinaryTree& tree, uint32_t node, uint32_t first, uint32_t count, const Cut& cut) {
+    tree.nodes[node] = {Box3f(), first, count, 0};
     if (count == 1) return;
-    const uint32_t first_count = cut(tree.references.data() + first, count);
-    append_subtree(tree, first, first_count, cut);
-    tree.nodes[index].second_child = static_cast<uint32_t>(tree.nodes.size());
-    append_subtree(tree, first + first_count, count - first_count, cut);
+    Set set(tree.references.data() + first, count);
+    const uint32_t first_count = cut(set);
+    set.reorder();
+    const uint32_t second_child = node + 1 + node_count(first_count);
+    tree.nodes[node].second_child = second_child;
+    fill_subtree(tree, node + 1, first, first_count, cut);
+    fill_subtree(tree, second_child, first + first_count, count - first_count, cut);
 }
 
 // The cut with the least SAH cost in blocks among all cuts of the centers' order along an axis.
-uint32_t best_cut(Reference* references, uint32_t count) {
+uint32_t best_cut(Set& set) {
+    const uint32_t count = set.count();
     double least = std::numeric_limits<double>::infinity();
     uint32_t best = count / 2;
     int best_axis = 0;
     std::vector<double> second_area(count);
     for (int axis = 0; axis < 3; ++axis) {
-        sort_by_center(references, count, axis);
+        set.sort_by_center(axis);
         Box3f second;
         for (uint32_t i = count; i-- > 1;) {
-            second.extendBy(references[i].bounds);
+            second.extendBy(set.bounds(i));
             second_area[i] = half_area(second);
         }
         Box3f first;
         for (uint32_t i = 1; i < count; ++i) {
-            first.extendBy(references[i - 1].bounds);
+            first.extendBy(set.bounds(i - 1));
             const double cost = half_area(first) * block_count(i) + second_area[i] * block_count(count - i);
             if (cost < least) {
                 least = cost;
@@ -58,16 +94,16 @@ uint32_t best_cut(Reference* references, uint32_t count) {
             }
         }
     }
-    sort_by_center(references, count, best_axis);
+    set.sort_by_center(best_axis);
     return best;
 }
 
-uint32_t median_cut(Reference* references, uint32_t count) {
+uint32_t median_cut(Set& set) {
     Box3f centers;
-    for (uint32_t i = 0; i < count; ++i)
-        centers.extendBy(center(references[i].bounds));
-    sort_by_center(references, count, static_cast<int>(centers.majorAxis()));
-    return count / 2;
+    for (uint32_t i = 0; i < set.count(); ++i)
+        centers.extendBy(center(set.bounds(i)));
+    set.sort_by_center(static_cast<int>(centers.majorAxis()));
+    return set.count() / 2;
 }
 
 }  // namespace
@@ -91,8 +127,8 @@ Box3f bounds_of(const Vertices& vertices) {
     return box;
 }
 
-void append_swept_subtree(BinaryTree& tree, uint32_t first, uint32_t count) {
-    append_subtree(tree, first, count, best_cut);
+void fill_swept_subtree(BinaryTree& tree, uint32_t node, uint32_t first, uint32_t count) {
+    fill_subtree(tree, node, first, count, best_cut);
 }
 
 // Children come after their parents, so backwards is from the leaves up.
@@ -114,7 +150,9 @@ BinaryTree build_median_tree(const Scene& scene) {
     const std::vector<Vertices> vertices = all_vertices(scene);
     for (uint32_t i = 0; i < vertices.size(); ++i)
         tree.references.push_back({bounds_of(vertices[i]), i});
-    append_subtree(tree, 0, static_cast<uint32_t>(vertices.size()), median_cut);
+    const auto count = static_cast<uint32_t>(vertices.size());
+    tree.nodes.resize(node_count(count));
+    fill_subtree(tree, 0, 0, count, median_cut);
     compute_bounds(tree);
     return tree;
 }

@@ -41,9 +41,14 @@ BinaryTree build_binary_tree(const Scene& scene, BvhQuality quality);
 // of triangles whatever the scene.
 BinaryTree build_median_tree(const Scene& scene);
 
-// Appends nodes, without bounds, for the last count references, which start at first. Tries every cut of each
-// set: for small ones.
-void append_swept_subtree(BinaryTree& tree, uint32_t first, uint32_t count);
+// The nodes of a tree over so many references, one per leaf.
+inline uint32_t node_count(uint32_t references) {
+    return 2 * references - 1;
+}
+
+// Orders the references first .. first + count - 1 and fills their nodes, without bounds, from the given one on. Tries
+// every cut of each set: for small ones. Subtrees share nothing, so several may be filled at once.
+void fill_swept_subtree(BinaryTree& tree, uint32_t node, uint32_t first, uint32_t count);
 // All nodes' bounds from the references'.
 void compute_bounds(BinaryTree& tree);
 

@@ -32,12 +32,4 @@ Polygon clip(const Polygon& polygon, int axis, double position, Side side);
 // nothing of the triangle is inside.
 Box3f clipped_bounds(const std::array<V3f, 3>& triangle, const Box3f& cell);
 
-// The quick form for trying split planes: bounds of the triangle's parts on both sides of one plane, cut down
-// to the cell. They hold what clipped_bounds() of the two halves of the cell would, and may be larger.
-struct SplitBounds {
-    Box3f below;
-    Box3f above;
-};
-SplitBounds split_bounds(const std::array<V3f, 3>& triangle, const Box3f& cell, int axis, float position);
-
 }  // namespace obscura

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "bvh/clip.h"
 #include "bvh/parts.h"
+#include "bvh/split_bounds.h"
 
 #include <embree3/rtcore.h>
 #include <tbb/parallel_for.h>
@@ -24,7 +25,7 @@ namespace {
 // uses a twentieth of it; soups of long thin triangles use most, and their SAH cost falls by a third.
 constexpr double SPLIT_ROOM = 1.0;
 
-// Embree stops at this many references (its limit) and append_swept_subtree() goes on: trying every cut of so
+// Embree stops at this many references (its limit) and fill_swept_subtree() goes on: trying every cut of so
 // few is quicker than binning them, and the tree is better.
 constexpr uint32_t SMALL_SET = RTC_BUILD_MAX_PRIMITIVES_PER_LEAF;
 
@@ -97,30 +98,51 @@ RTCBuildQuality embree_quality(BvhQuality quality) {
     return RTC_BUILD_QUALITY_HIGH;
 }
 
-// Appends the subtree in depth-first order. The boxes of parts that were split several times are cut closer,
-// now that they are final; where nothing of the triangle is in its box, the box stays.
-void flatten(const BuildNode& node, const std::vector<Vertices>& vertices, BinaryTree& tree) {
-    if (node.primitives == nullptr) {
-        const size_t index = tree.nodes.size();
-        tree.nodes.emplace_back();
-        const auto first = static_cast<uint32_t>(tree.references.size());
-        flatten(*node.child[0], vertices, tree);
-        const auto second_child = static_cast<uint32_t>(tree.nodes.size());
-        flatten(*node.child[1], vertices, tree);
-        const auto count = static_cast<uint32_t>(tree.references.size()) - first;
-        tree.nodes[index] = {Box3f(), first, count, second_child};
-        return;
+// A leaf of Embree's tree and where its subtree goes.
+struct Leaf {
+    const BuildNode* source;
+    uint32_t node, first;
+};
+
+// Lays Embree's nodes and leaves out depth first, from the next node and reference on. Returns the number of references.
+uint32_t lay_out(const BuildNode& source, uint32_t first, BinaryTree& tree, std::vector<Leaf>& leaves) {
+    const auto node = static_cast<uint32_t>(tree.nodes.size());
+    if (source.primitives != nullptr) {
+        leaves.push_back({&source, node, first});
+        tree.nodes.resize(node + node_count(source.count));
+        return source.count;
     }
-    for (uint32_t i = 0; i < node.count; ++i) {
-        const uint32_t triangle = node.primitives[i].primID;
-        Box3f bounds = box_of(node.primitives[i]);
-        if (bounds != bounds_of(vertices[triangle])) {
-            const Box3f tight = clipped_bounds(vertices[triangle], bounds);
+    tree.nodes.emplace_back();
+    uint32_t count = lay_out(*source.child[0], first, tree, leaves);
+    const auto second_child = static_cast<uint32_t>(tree.nodes.size());
+    count += lay_out(*source.child[1], first + count, tree, leaves);
+    tree.nodes[node] = {Box3f(), first, count, second_child};
+    return count;
+}
+
+// The boxes of parts that were split several times are cut closer, now that they are final; where nothing of the triangle
+// is in its box, the box stays.
+void fill(const Leaf& leaf, const std::vector<Vertices>& vertices, BinaryTree& tree) {
+    for (uint32_t i = 0; i < leaf.source->count; ++i) {
+        const RTCBuildPrimitive& primitive = leaf.source->primitives[i];
+        const Vertices& triangle = vertices[primitive.primID];
+        Box3f bounds = box_of(primitive);
+        if (bounds != bounds_of(triangle)) {
+            const Box3f tight = clipped_bounds(triangle, bounds);
             if (!tight.isEmpty()) bounds = tight;
         }
-        tree.references.push_back({bounds, triangle});
+        tree.references[leaf.first + i] = {bounds, primitive.primID};
     }
-    append_swept_subtree(tree, static_cast<uint32_t>(tree.references.size()) - node.count, node.count);
+    fill_swept_subtree(tree, leaf.node, leaf.first, leaf.source->count);
+}
+
+BinaryTree flatten(const BuildNode& root, const std::vector<Vertices>& vertices) {
+    BinaryTree tree;
+    std::vector<Leaf> leaves;
+    tree.references.resize(lay_out(root, 0, tree, leaves));
+    tbb::parallel_for(size_t{0}, leaves.size(), [&](size_t i) { fill(leaves[i], vertices, tree); });
+    compute_bounds(tree);
+    return tree;
 }
 
 using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, decltype(&rtcReleaseDevice)>;
@@ -157,13 +179,7 @@ BinaryTree build_part(const DeviceHandle& device, std::span<const RTCBuildPrimit
     // thread makes the tree a function of the scene alone.
     tbb::task_arena one_thread(1);
     const void* root = one_thread.execute([&] { return rtcBuildBVH(&arguments); });
-    BinaryTree tree;
-    if (root == nullptr) return tree;
-    tree.references.reserve(primitives.size());
-    tree.nodes.reserve(2 * primitives.size());
-    flatten(*static_cast<const BuildNode*>(root), vertices, tree);
-    compute_bounds(tree);
-    return tree;
+    return root == nullptr ? BinaryTree() : flatten(*static_cast<const BuildNode*>(root), vertices);
 }
 
 }  // namespace

@@ -3,11 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <filesystem>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/log.h"
@@ -52,6 +55,13 @@ std::vector<std::string> resolve_layers(std::vector<std::string> wanted) {
     return layers;
 }
 
+// What the other thread prepares while the device is opened.
+struct Input {
+    std::unique_ptr<const Scene> scene;
+    RenderJob job;
+    RenderSetup setup;
+};
+
 ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
     set_quiet(options.quiet);
     TraceRecord trace;
@@ -61,14 +71,20 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
     const RenderSettings settings = settings_of(options);
     const std::vector<std::string> layers = resolve_layers(out.layers);
     const uint64_t queue_bytes = parse_bytes(options.memory);
-    // The scene is read while the driver starts: in the other thread of the two, as Oclgrind 21.10 crashes when a device is
-    // used by another thread than the one that opened it.
+    // The scene is read, and its BVH begun, while the driver starts: in the other thread of the two, as Oclgrind 21.10
+    // crashes when a device is used by another thread than the one that opened it.
     RunSeconds seconds;
-    std::future<Scene> reading = std::async(std::launch::async, [&] {
-        const TraceStep step(&trace, TraceCategory::host, "load");
-        Scene read = load_gltf(scene_file);
+    std::atomic<bool> has_no_device = false;
+    std::future<Input> reading = std::async(std::launch::async, [&] {
+        std::optional<TraceStep> step(std::in_place, &trace, TraceCategory::host, "load");
+        auto scene = std::make_unique<const Scene>(load_gltf(scene_file));
         seconds.load = run.seconds();
-        return read;
+        step.reset();
+        RenderJob job{*scene, settings, layers, queue_bytes, options.wave_size, options.portable};
+        job.count_visits = out.needs_visits();
+        const RenderSetup setup = set_up_render(job);
+        if (!has_no_device) job.bvh = start_building(job, &trace);
+        return Input{std::move(scene), std::move(job), setup};
     });
     std::vector<std::unique_ptr<Device>> opened;
     std::exception_ptr no_device;
@@ -77,9 +93,11 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
         opened = open_devices(options.device);
     } catch (const std::exception&) {
         no_device = std::current_exception();
+        has_no_device = true;
     }
-    const Scene scene = reading.get();  // what is wrong with the scene is told first
+    Input input = reading.get();  // what is wrong with the scene is told first
     if (no_device) std::rethrow_exception(no_device);
+    const Scene& scene = *input.scene;
     std::vector<std::unique_ptr<ProgramLibrary>> libraries;
     std::vector<RenderDevice> devices;
     for (const auto& device : opened) {
@@ -92,16 +110,15 @@ ExitCode run_render(const RenderOptions& options, const OutputOptions& out) {
              counted(scene.objects.size(), "object"), plural(devices.size(), "device"),
              device_names(devices));
     std::unique_ptr<Progress> progress;
-    RenderJob job{scene, settings, layers, queue_bytes, options.wave_size, options.portable};
-    job.count_visits = out.needs_visits();
-    RenderResult result = render_scene(devices, job, [&](double fraction, const RayCounts& rays) {
+    const auto after_wave = [&](double fraction, const RayCounts& rays) {
         if (!progress) {
             seconds.first_wave = run.seconds();
             progress = std::make_unique<Progress>("render", "ray");
         }
         progress->update(fraction, rays.total());
         return !is_interrupted();
-    });
+    };
+    RenderResult result = render_scene(devices, input.job, input.setup, after_wave);
     if (progress) progress->finish(result.rays.total());
     progress.reset();
 

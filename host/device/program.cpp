@@ -76,18 +76,35 @@ ProgramLibrary::ProgramLibrary(Device& device, uint32_t local_size)
                          device.name(), device.max_work_group_size());
 }
 
-void ProgramLibrary::prepare(std::span<const KernelRequest> requests) {
-    std::map<std::string, Source> missing;
-    std::vector<std::string> order;
-    for (const KernelRequest& request : requests) {
-        Source source = source_of(request);
-        if (load(source) || missing.contains(source.key)) continue;
-        order.push_back(source.key);
-        missing.emplace(source.key, std::move(source));
+std::vector<cl::Kernel> ProgramLibrary::kernels(std::span<const KernelRequest> requests) {
+    std::vector<Source> sources;
+    for (const KernelRequest& request : requests)
+        sources.push_back(source_of(request));
+    prepare(sources);
+    std::vector<cl::Kernel> kernels;
+    for (const Source& source : sources)
+        kernels.push_back(make_kernel(programs_.at(source.key), source));
+    return kernels;
+}
+
+cl::Kernel ProgramLibrary::kernel(const KernelRequest& request) {
+    return kernels(std::span(&request, 1)).front();
+}
+
+cl::Kernel ProgramLibrary::kernel(const std::string& stage, const std::string& options) {
+    return kernel(KernelRequest{.stage = stage, .options = options});
+}
+
+// Builds those programs that are neither in memory nor in the cache.
+void ProgramLibrary::prepare(std::span<const Source> sources) {
+    std::vector<const Source*> missing;
+    for (const Source& source : sources) {
+        const auto is_same = [&](const Source* other) { return other->key == source.key; };
+        if (!load(source) && std::ranges::none_of(missing, is_same)) missing.push_back(&source);
     }
-    for (size_t i = 0; i < order.size(); ++i) {
-        const Source& source = missing.at(order[i]);
-        say_compiling(i + 1, order.size(), source.stage);
+    for (size_t i = 0; i < missing.size(); ++i) {
+        const Source& source = *missing[i];
+        say_compiling(i + 1, missing.size(), source.stage);
         const double seconds_before = compile_seconds_;
         std::vector<unsigned char> binary;
         try {
@@ -99,16 +116,6 @@ void ProgramLibrary::prepare(std::span<const KernelRequest> requests) {
         say_compiled(duration_text(compile_seconds_ - seconds_before));
         if (!binary.empty()) cache_.store(source.key, binary);
     }
-}
-
-cl::Kernel ProgramLibrary::kernel(const std::string& stage, const std::string& options) {
-    return kernel(KernelRequest{.stage = stage, .options = options});
-}
-
-cl::Kernel ProgramLibrary::kernel(const KernelRequest& request) {
-    prepare(std::span(&request, 1));
-    const Source source = source_of(request);
-    return make_kernel(programs_.at(source.key), source);
 }
 
 cl::Kernel ProgramLibrary::kernel_from_text(const std::string& stage, const std::string& text,

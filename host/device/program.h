@@ -31,14 +31,11 @@ class ProgramLibrary {
     // for one.
     explicit ProgramLibrary(Device& device, uint32_t local_size = 64);
 
-    // Builds what is missing of the requests, and says "compiling kernel k of n" for each that is not in the
-    // cache. Throws DeviceError with the whole build log.
-    void prepare(std::span<const KernelRequest> requests);
-
-    // The kernel, built now if prepare() didn't. Each call gives an object of its own, with its own
-    // arguments.
-    cl::Kernel kernel(const std::string& stage, const std::string& options = {});
+    // The kernels, in the order of the requests. Says "compiling kernel k of n" for each that is not in the cache. Throws
+    // DeviceError with the whole build log. Each call gives objects of its own, with their own arguments.
+    std::vector<cl::Kernel> kernels(std::span<const KernelRequest> requests);
     cl::Kernel kernel(const KernelRequest& request);
+    cl::Kernel kernel(const std::string& stage, const std::string& options = {});
     // The same for a source that is no file (a test's); it may include files of kernels/. Neither cached on
     // disk nor warmed up.
     cl::Kernel kernel_from_text(const std::string& stage, const std::string& text, const std::string& kernel,
@@ -56,6 +53,7 @@ class ProgramLibrary {
     Source source_of(const KernelRequest& request) const;
     Source make_source(const std::string& stage, const std::string& text, const std::string& kernel,
                        const std::string& options) const;
+    void prepare(std::span<const Source> sources);
     bool load(const Source& source);
     std::vector<unsigned char> compile(const Source& source);
     cl::Program build_from_text(const Source& source) const;

@@ -63,19 +63,21 @@ std::filesystem::path ProgramCache::entry_path(const std::string& key) const {
 }
 
 std::optional<std::vector<unsigned char>> ProgramCache::load(const std::string& key) const {
-    std::error_code ignored;
-    if (folder_.empty() || !std::filesystem::is_regular_file(entry_path(key), ignored)) return std::nullopt;
+    if (folder_.empty()) return std::nullopt;
+    std::error_code error;
+    const auto size = std::filesystem::file_size(entry_path(key), error);  // a folder has none
+    if (error) return std::nullopt;
+    std::vector<unsigned char> bytes(size);
     std::ifstream file(entry_path(key), std::ios::binary);
-    if (!file) return std::nullopt;
-    std::vector<unsigned char> bytes((std::istreambuf_iterator<char>(file)),
-                                     std::istreambuf_iterator<char>());
+    if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
+        return std::nullopt;
     const size_t header_size = entry_header(key, "").size();
     if (bytes.size() < header_size) return std::nullopt;
     const std::string_view text = as_text(bytes);
     if (text.substr(0, header_size) != entry_header(key, text.substr(header_size))) return std::nullopt;
     bytes.erase(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(header_size));
     // A folder that can be read only keeps its times.
-    std::filesystem::last_write_time(entry_path(key), std::filesystem::file_time_type::clock::now(), ignored);
+    std::filesystem::last_write_time(entry_path(key), std::filesystem::file_time_type::clock::now(), error);
     return bytes;
 }
 

@@ -176,7 +176,7 @@ std::vector<PointLight> make_point_lights(const Scene& scene) {
 std::vector<float> make_tables(PixelFilter filter) {
     static_assert(AlbedoTable::SIZE == ALBEDO_TABLE_SIZE);
     std::vector<float> tables(TABLE_FLOATS);
-    std::ranges::copy(albedo_table().values, tables.begin() + TABLE_ALBEDO);
+    std::ranges::copy(ALBEDO_TABLE.values, tables.begin() + TABLE_ALBEDO);
     for (uint32_t code = 0; code < SRGB_TABLE_FLOATS; ++code) {
         tables[TABLE_SRGB + code] = static_cast<float>(srgb_to_linear(static_cast<uint8_t>(code)));
     }

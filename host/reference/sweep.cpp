@@ -51,11 +51,9 @@ std::vector<SweepTask> plan_sweep(const std::vector<SweepMethod>& methods, uint3
 
 SweepRenderer::SweepRenderer(Device& device, ProgramLibrary& library, const RenderJob& base,
                              const SweepReferences& references)
-    : device_(device),
-      library_(library),
-      base_(base),
-      references_(references),
-      bvh_(build_bvh(base.scene, base.bvh_quality)) {}
+    : device_(device), library_(library), base_(base), references_(references) {
+    if (!base_.bvh.valid()) base_.bvh = start_building(base_, device.trace());
+}
 
 std::optional<SweepRenderer::Picture> SweepRenderer::render(const SweepTask& task, uint64_t seed,
                                                             const GoOn& go_on) {
@@ -70,7 +68,6 @@ std::optional<SweepRenderer::Picture> SweepRenderer::render(const SweepTask& tas
     }
     RenderJob job = base_;
     job.settings = settings;
-    job.bvh = &bvh_;
     job.portable = base_.portable || task.method.portable;
     job.layers.assign(DIFFUSE_PARTS.begin(), DIFFUSE_PARTS.end());
     if (task.method.reference == IntegratorKind::obscurance) job.layers.emplace_back("obscurance");

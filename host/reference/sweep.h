@@ -80,7 +80,6 @@ class SweepRenderer {
     ProgramLibrary& library_;
     RenderJob base_;
     const SweepReferences& references_;
-    Bvh bvh_;
 };
 
 }  // namespace obscura

@@ -74,7 +74,8 @@ SurfaceModel surface_model(const Material& material) {
     model.has_specular = !material.unlit && (material.specular > 0 || material.metallic > 0);
     model.diffuse_scale = Rgb(static_cast<float>(exact.diffuse_scale));
     model.mean_scale = Rgb(exact.diffuse_scale * (RgbD(1, 1, 1) - exact.mean_albedo));
-    model.opacity = 1 - transmission * (1 - mean_pane_reflectance());
+    static const double reflectance = mean_pane_reflectance();
+    model.opacity = 1 - transmission * (1 - reflectance);
     return model;
 }
 

@@ -27,10 +27,15 @@ int64_t floor_division(int64_t a, int64_t b) {
 }
 
 int64_t wrap_index(Wrap wrap, int64_t i, int64_t size) {
+    if (i >= 0 && i < size) return i;  // nearly always; divisions are slow
     if (wrap == Wrap::clamp_to_edge) return std::clamp<int64_t>(i, 0, size - 1);
     const int64_t period = wrap == Wrap::repeat ? size : 2 * size;
     const int64_t rest = i - floor_division(i, period) * period;
     return rest < size ? rest : period - 1 - rest;
+}
+
+RgbD linear_color(const uint8_t* code) {
+    return {srgb_to_linear(code[0]), srgb_to_linear(code[1]), srgb_to_linear(code[2])};
 }
 
 // Parameters in (0, 1) at which an edge crosses the lines of the texel grid, with 0 and 1, ascending.
@@ -64,16 +69,16 @@ TextureIntegral::TextureIntegral(const Texture& texture)
     for (int64_t j = 0; j < height_; ++j) {
         RgbD sum(0, 0, 0);
         prefixes_.push_back(sum);
+        const uint8_t* const row = texture.rgba.data() + 4 * j * width_;
         for (int64_t i = 0; i < width_; ++i)
-            prefixes_.push_back(sum += texel(i, j));
+            prefixes_.push_back(sum += linear_color(row + 4 * i));
     }
 }
 
 RgbD TextureIntegral::texel(int64_t i, int64_t j) const {
     const int64_t column = wrap_index(texture_.wrap_u, i, width_);
     const int64_t row = wrap_index(texture_.wrap_v, j, height_);
-    const uint8_t* code = texture_.rgba.data() + 4 * (row * width_ + column);
-    return {srgb_to_linear(code[0]), srgb_to_linear(code[1]), srgb_to_linear(code[2])};
+    return linear_color(texture_.rgba.data() + 4 * (row * width_ + column));
 }
 
 // Sum of the texels 0 .. i-1 of row j; minus the texels i .. -1 for negative i.

@@ -18,11 +18,10 @@ StageKernels prepare_kernels(ProgramLibrary& library, const Needs& needs, const 
         requests.push_back(
             {std::string(stage_info(stage).name), stage_options(stage, needs, all, job.portable)});
     }
-    library.prepare(requests);
+    const std::vector<cl::Kernel> built = library.kernels(requests);
     StageKernels kernels;
-    for (size_t i = 0; i < stages.size(); ++i) {
-        kernels[static_cast<uint32_t>(stages[i])] = library.kernel(requests[i]);
-    }
+    for (size_t i = 0; i < stages.size(); ++i)
+        kernels[static_cast<uint32_t>(stages[i])] = built[i];
     return kernels;
 }
 

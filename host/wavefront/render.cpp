@@ -109,6 +109,24 @@ uint64_t smallest_allocation(std::span<const RenderDevice> devices) {
 
 }  // namespace
 
+RenderSetup set_up_render(const RenderJob& job) {
+    RenderSetup setup;
+    setup.settings = with_default_sky(job.scene, job.settings);
+    check_aspect(setup.settings, select_camera(job.scene, setup.settings).aspect_ratio);
+    setup.needs = analyse_needs(job.scene, setup.settings);
+    setup.planes = assign_planes(setup.needs, wanted_layers(job.layers));
+    setup.rect = crop_pixels(setup.settings.crop, setup.settings.width, setup.settings.height);
+    check_picture_memory(setup.rect, job.layers, plane_count(setup.planes));
+    return setup;
+}
+
+std::shared_future<Bvh> start_building(const RenderJob& job, TraceRecord* trace) {
+    return std::async(std::launch::async, [&scene = job.scene, quality = job.bvh_quality, trace] {
+        const TraceStep step(trace, TraceCategory::host, "build BVH");
+        return build_bvh(scene, quality);
+    });
+}
+
 std::string device_names(std::span<const RenderDevice> devices) {
     std::vector<std::string> names;
     for (const RenderDevice& device : devices)
@@ -124,28 +142,24 @@ RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJ
 
 RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob& job,
                           const RenderCallback& after_wave) {
+    return render_scene(devices, job, set_up_render(job), after_wave);
+}
+
+RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob& job,
+                          const RenderSetup& setup, const RenderCallback& after_wave) {
     OBSCURA_CHECK(!devices.empty() && (devices.size() == 1 || !job.observer), "an observer of {}",
                   counted(devices.size(), "device"));
     for (const RenderDevice& device : devices)
         device.device.memory().reset_peaks();
     TraceRecord* const trace = devices.front().device.trace();
     RenderResult result;
-    const RenderSettings settings = with_default_sky(job.scene, job.settings);
+    const RenderSettings& settings = setup.settings;
+    const LayerPlanes& planes = setup.planes;
+    const PixelRect& rect = setup.rect;
     result.settings = settings;
-    // An unknown camera is an error before any work is done, and so is a picture that doesn't fit.
-    check_aspect(settings, select_camera(job.scene, settings).aspect_ratio);
-    result.needs = analyse_needs(job.scene, settings);
-    const LayerPlanes planes = assign_planes(result.needs, wanted_layers(job.layers));
-    const PixelRect rect = crop_pixels(settings.crop, settings.width, settings.height);
-    check_picture_memory(rect, job.layers, plane_count(planes));
-
+    result.needs = setup.needs;
     // The builder works on one core, everything up to the upload on another.
-    std::future<Bvh> building;
-    if (job.bvh == nullptr)
-        building = std::async(std::launch::async, [&] {
-            const TraceStep step(trace, TraceCategory::host, "build BVH");
-            return build_bvh(job.scene, job.bvh_quality);
-        });
+    const std::shared_future<Bvh> building = job.bvh.valid() ? job.bvh : start_building(job, trace);
     result.d_max = resolve_max_distance(settings.d_max, job.scene);
     result.radiometry = compute_radiometry(job.scene);
     check_ambient(job.scene, result.radiometry, settings);
@@ -153,8 +167,7 @@ RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob
     Team team(devices, job, result.needs, rect.pixel_count() * settings.spp, after_wave);
     result.seconds.compile = compile_watch.seconds();
     const SceneArrays arrays = make_scene_arrays(job.scene, settings.filter);
-    const Bvh built = job.bvh == nullptr ? building.get() : Bvh();
-    const Bvh& bvh = job.bvh == nullptr ? built : *job.bvh;
+    const Bvh& bvh = building.get();
     result.seconds.build = bvh.build_seconds;
 
     const Stopwatch upload_watch;

@@ -15,6 +15,7 @@
 #include "wavefront/visit_recorder.h"
 
 #include <functional>
+#include <future>
 #include <map>
 #include <optional>
 #include <span>
@@ -34,9 +35,9 @@ struct RenderJob {
     uint64_t wave_size = DEFAULT_WAVE_SIZE;
     bool portable = false;  // kernels without instructions of one processor
     BvhQuality bvh_quality = BvhQuality::high;
-    DepthObserver observer = {};  // optional
-    const Bvh* bvh = nullptr;     // of the scene, built already; built here if null
-    bool count_visits = false;    // fills RenderResult::visits, in about the time of another render
+    DepthObserver observer = {};       // optional
+    std::shared_future<Bvh> bvh = {};  // of the scene, if it is built already or being built
+    bool count_visits = false;         // fills RenderResult::visits, in about the time of another render
 };
 
 // Wall times, seconds. The BVH is built while the kernels are compiled.
@@ -74,6 +75,20 @@ struct RenderResult : DeviceWork {
     uint32_t samples_per_pixel = 0;  // that every pixel has; some have more
 };
 
+// What settings come to in the job's scene.
+struct RenderSetup {
+    RenderSettings settings;  // with the sky that was chosen
+    Needs needs;
+    LayerPlanes planes{};
+    PixelRect rect;  // the pixels to render
+};
+
+// Throws InputError where there is no such camera or the picture doesn't fit into memory.
+RenderSetup set_up_render(const RenderJob& job);
+
+// Builds the BVH in a thread of its own, which the last copy of the future waits for. trace: null = nowhere.
+std::shared_future<Bvh> start_building(const RenderJob& job, TraceRecord* trace);
+
 // fraction: of the samples done, 0 before the first wave; false stops the render there.
 using RenderCallback = std::function<bool(double fraction, const RayCounts& rays)>;
 
@@ -87,6 +102,9 @@ std::string device_names(std::span<const RenderDevice> devices);
 
 // Several devices share the work, each in a thread of its own; one does it in this thread. The callback is called by one
 // thread at a time. With several devices there is no observer.
+RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob& job,
+                          const RenderSetup& setup, const RenderCallback& after_wave);
+// The same for a job that isn't set up yet.
 RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob& job,
                           const RenderCallback& after_wave);
 RenderResult render_scene(Device& device, ProgramLibrary& library, const RenderJob& job,

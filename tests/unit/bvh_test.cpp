@@ -7,6 +7,7 @@
 #include "bvh/clip.h"
 #include "bvh/collapse.h"
 #include "bvh/layout.h"
+#include "bvh/split_bounds.h"
 #include "reference/brute_force.h"
 #include "reference/hard_rays.h"
 #include "reference/meshes.h"
@@ -281,6 +282,27 @@ TEST(Clip, PlaneCutsPolygonNotOnlyBox) {
     EXPECT_EQ(parts.below.max.x, 0.5F);
     EXPECT_EQ(parts.above.min.x, 0.5F);
     EXPECT_NEAR(parts.above.min.y, 0.4995F, 1e-6F);
+}
+
+// Corners below, in and above the plane in every combination, beside the polygon that the plane cuts exactly.
+TEST(Clip, QuickBoundsAreThoseOfThePolygonWhereverTheCornersLie) {
+    const auto near = [](const Box3f& found, const Polygon& part) {
+        Box3f exact;
+        for (int i = 0; i < part.count; ++i)
+            exact.extendBy(V3f(part.corner[static_cast<size_t>(i)]));
+        if (exact.isEmpty() || found.isEmpty()) return exact.isEmpty() == found.isEmpty();
+        return found.min.equalWithAbsError(exact.min, 1e-6F) && found.max.equalWithAbsError(exact.max, 1e-6F);
+    };
+    for (int combination = 0; combination < 81; ++combination) {
+        const int axis = combination % 3;
+        Vertices triangle{V3f(0.3F, 0.1F, 0.9F), V3f(0.7F, 0.8F, 0.2F), V3f(0.5F, 0.4F, 0.6F)};
+        for (int i = 0, rest = combination / 3; i < 3; ++i, rest /= 3)
+            triangle[static_cast<size_t>(i)][axis] = 0.25F * static_cast<float>(rest % 3 - 1) + 0.5F;
+        const SplitBounds found = split_bounds(triangle, bounds_of(triangle), axis, 0.5F);
+        const Polygon whole(triangle);
+        EXPECT_TRUE(near(found.below, clip(whole, axis, 0.5, Side::below))) << combination;
+        EXPECT_TRUE(near(found.above, clip(whole, axis, 0.5, Side::above))) << combination;
+    }
 }
 
 TEST(Clip, CellWithoutTriangleIsEmpty) {

@@ -115,7 +115,7 @@ TEST(Albedo, MeanIsTheCosineWeightedIntegral) {
 }
 
 TEST(Albedo, TableNeverExceedsOne) {
-    for (const float value : albedo_table().values)
+    for (const float value : ALBEDO_TABLE.values)
         EXPECT_TRUE(value >= 0 && value <= 1) << value;
     for (double alpha = 0; alpha <= 1; alpha += 0.01) {
         for (double mu = 0; mu <= 1; mu += 0.01) {
