@@ -12,7 +12,7 @@
 namespace obscura {
 namespace {
 
-// The lengths of the queues from the beginning of a depth on.
+// The lengths of the queues from this moment on. status: of the end of the depth that begins.
 void trace_queues(const Device& device, int64_t time_ns, const Work& work, const DeviceStatus& status) {
     const CommandLog* const commands = device.commands();
     if (commands == nullptr) return;
@@ -87,7 +87,10 @@ void Scheduler::run_wave(const Frame& frame, const Wave& wave) {
     run_stages(StageTime::wave_end, samples);
     read_status();
     profiler_.collect();
-    if (CommandLog* const commands = device_.commands()) commands->collect();
+    if (CommandLog* const commands = device_.commands()) {
+        commands->collect();
+        trace_queues(device_, commands->trace().now_ns(), {}, {});  // they are empty until the next wave
+    }
 }
 
 uint32_t Scheduler::run_depth(const Frame& frame, const Work& work) {

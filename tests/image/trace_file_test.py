@@ -116,6 +116,8 @@ class Trace(unittest.TestCase):
             if event["ph"] == "C":
                 self.assertEqual(DEVICE, event["pid"])
                 lengths[event["name"]] += event["args"]["queued"]
+        last = {event["name"]: event["args"]["queued"] for event in self.events if event["ph"] == "C"}
+        self.assertEqual({0}, set(last.values()))
         rays = self.stats["rays"]
         self.assertEqual({"camera rays": rays["camera"], "shadow rays": rays["shadow"], "glossy rays": rays["glossy"],
                           "obscurance points": rays["obscurance"] // self.stats["obscurance_rays"]}, lengths)
