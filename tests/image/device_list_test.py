@@ -94,7 +94,7 @@ class DeviceList(unittest.TestCase):
         self.assert_same_picture()
         events = json.loads((self.folder / "trace.json").read_text(encoding="utf-8"))["traceEvents"]
         names = {event["pid"]: event["args"]["name"] for event in events if event["name"] == "process_name"}
-        for process, row in enumerate(stats["devices"], 1):
+        for process, row in enumerate(stats["devices"], 2):  # 1 is the host
             self.assertEqual(row["device"], names[process])
             launches = [event["name"] for event in events if event["ph"] == "X" and event["pid"] == process]
             for kernel, figures in row["kernels"].items():
