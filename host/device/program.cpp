@@ -78,10 +78,12 @@ ProgramLibrary::ProgramLibrary(Device& device, uint32_t local_size)
 
 std::vector<cl::Kernel> ProgramLibrary::kernels(std::span<const KernelRequest> requests) {
     std::vector<Source> sources;
+    sources.reserve(requests.size());
     for (const KernelRequest& request : requests)
         sources.push_back(source_of(request));
     prepare(sources);
     std::vector<cl::Kernel> kernels;
+    kernels.reserve(sources.size());
     for (const Source& source : sources)
         kernels.push_back(make_kernel(programs_.at(source.key), source));
     return kernels;

@@ -111,6 +111,7 @@ uint64_t smallest_allocation(std::span<const RenderDevice> devices) {
 
 std::string device_names(std::span<const RenderDevice> devices) {
     std::vector<std::string> names;
+    names.reserve(devices.size());
     for (const RenderDevice& device : devices)
         names.push_back(device.device.name());
     return fmt::format("{}", fmt::join(names, ", "));

@@ -28,6 +28,7 @@ void Team::render(const Frame& frame, std::span<const uint32_t> pixel_order, Wor
     // One device stays in this thread: Oclgrind 21.10 crashes when another thread than the one that opened it uses it.
     if (members_.size() == 1) return take_pieces(0, frame, pixel_order, list, film);
     std::vector<std::future<void>> at_work;
+    at_work.reserve(members_.size());
     for (size_t member = 0; member < members_.size(); ++member)
         at_work.push_back(std::async(std::launch::async, [&, member] {
             try {
@@ -69,6 +70,7 @@ bool Team::report(size_t member, uint64_t samples, const RayCounts& rays) {
 
 std::vector<DeviceWork> Team::work() const {
     std::vector<DeviceWork> work;
+    work.reserve(members_.size());
     for (const auto& member : members_)
         work.push_back(member->work());
     return work;
