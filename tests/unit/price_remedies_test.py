@@ -12,6 +12,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.dont_write_bytecode = True
+sys.path.insert(0, str(ROOT / "tools"))  # where the script finds the module beside it
 loader = importlib.machinery.SourceFileLoader("price_remedies", str(ROOT / "tools/price-remedies"))
 price_remedies = types.ModuleType("price_remedies")
 price_remedies.__file__ = loader.path
