@@ -5,10 +5,11 @@
 import json
 import os
 import pathlib
-import signal
 import subprocess
 import tempfile
 import unittest
+
+from interrupting import interrupt
 
 import numpy
 
@@ -156,17 +157,8 @@ class Bench(unittest.TestCase):
 
     def test_interrupt_stops_after_the_work_in_hand(self):
         command = [PROGRAM, "bench", SCENE, "--width", "2000", "--height", "2000", "--dump-rays", self.folder / "x.rays"]
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        try:
-            for line in process.stderr:
-                if line.startswith("bench: "):  # the first report of progress
-                    process.send_signal(signal.SIGINT)
-                    break
-            output, messages = process.communicate(timeout=240)
-        finally:
-            process.kill()
-            process.wait()
-        self.assertEqual(4, process.returncode, messages)
+        code, output, messages = interrupt(command, "bench: ")  # the first report of progress
+        self.assertEqual(4, code, messages)
         self.assertIn("there are no figures", messages)
         self.assertEqual("", output)
 

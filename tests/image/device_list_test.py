@@ -6,10 +6,11 @@ import json
 import os
 import pathlib
 import shutil
-import signal
 import subprocess
 import tempfile
 import unittest
+
+from interrupting import interrupt
 
 PROGRAM = os.environ["OBSCURA_PROGRAM"]
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -151,18 +152,8 @@ class DeviceList(unittest.TestCase):
         picture = self.folder / "stopped.exr"
         command = [PROGRAM, "render", SCENE, "-o", picture, "--width", "64", "--height", "48", "--obscurance-rays", "1",
                    "--spp", str(1 << 20), "--wave-size", "4096", "--device", f"{self.one}/3"]
-        render = subprocess.Popen(command, stderr=subprocess.PIPE, text=True,
-                                  env={**os.environ, "POCL_MAX_PTHREAD_COUNT": "3"})
-        try:
-            for line in render.stderr:
-                if line.startswith("render: "):
-                    render.send_signal(signal.SIGINT)
-                    break
-            messages = render.communicate(timeout=240)[1]
-        finally:
-            render.kill()
-            render.wait()
-        self.assertEqual(4, render.returncode, messages)
+        code, _, messages = interrupt(command, "render: ", {"POCL_MAX_PTHREAD_COUNT": "3"})
+        self.assertEqual(4, code, messages)
         self.assertIn("the picture is saved with the samples it has", messages)
         compared = obscura("compare", picture, picture)
         self.assertEqual(0, compared.returncode, compared.stderr)

@@ -4,11 +4,12 @@
 # leaves an earlier picture alone.
 import os
 import pathlib
-import signal
 import struct
 import subprocess
 import tempfile
 import unittest
+
+from interrupting import interrupt
 
 PROGRAM = os.environ["OBSCURA_PROGRAM"]
 SCENE = pathlib.Path(__file__).resolve().parents[2] / "scenes/cornell"
@@ -28,25 +29,6 @@ def header(path):
     return attributes
 
 
-def stop_render(folder, line_start, environment=None):
-    """Renders to folder/x.exr and interrupts when a line of standard error starts so. Returns exit code and messages."""
-    command = [PROGRAM, "render", SCENE, "-o", folder / "x.exr", "--width", "64", "--height", "48", "--obscurance-rays", "1",
-               "--spp", str(PLANNED), "--wave-size", "4096"]
-    render = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env={**os.environ, **(environment or {})})
-    messages = ""
-    try:
-        for line in render.stderr:
-            messages += line
-            if line.startswith(line_start):
-                render.send_signal(signal.SIGINT)
-                break
-        messages += render.communicate(timeout=240)[1]
-    finally:
-        render.kill()
-        render.wait()
-    return render.returncode, messages
-
-
 class Interrupt(unittest.TestCase):
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()
@@ -54,7 +36,10 @@ class Interrupt(unittest.TestCase):
         self.folder = pathlib.Path(temporary.name)
 
     def stop(self, line_start, environment=None):
-        code, messages = stop_render(self.folder, line_start, environment)
+        """The messages of a render to x.exr that was interrupted when one began so."""
+        command = [PROGRAM, "render", SCENE, "-o", self.folder / "x.exr", "--width", "64", "--height", "48", "--obscurance-rays",
+                   "1", "--spp", str(PLANNED), "--wave-size", "4096"]
+        code, _, messages = interrupt(command, line_start, environment)
         if code == 3 and os.environ.get("OBSCURA_REQUIRE_DEVICE") != "1":
             self.skipTest("there is no OpenCL device: " + messages)
         self.assertEqual(4, code, messages)

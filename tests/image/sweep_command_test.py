@@ -12,6 +12,8 @@ import tempfile
 import time
 import unittest
 
+from interrupting import interrupt
+
 PROGRAM = os.environ["OBSCURA_PROGRAM"]
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENE = ROOT / "scenes/cornell"
@@ -145,17 +147,8 @@ class Sweep(unittest.TestCase):
         folder = self.folder / "reference"
         command = [PROGRAM, "sweep", SCENE, "-o", folder, "--methods", "owen", "--width", "100", "--height", "75", "--budgets",
                    "8", "--seeds", "2"]
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        try:
-            for line in process.stderr:
-                if line.startswith("reference obscurance: "):  # the first report of progress
-                    process.send_signal(signal.SIGINT)
-                    break
-            output, messages = process.communicate(timeout=240)
-        finally:
-            process.kill()
-            process.wait()
-        self.assertEqual((4, ""), (process.returncode, output), messages)
+        code, output, messages = interrupt(command, "reference obscurance: ")  # the first report of progress
+        self.assertEqual((4, ""), (code, output), messages)
         header = obscura("compare", folder / "obscurance.exr", folder / "obscurance.exr", "--json", "-")
         self.assertEqual(0, header.returncode, header.stderr)
         self.assertFalse((folder / "runs.json").exists())

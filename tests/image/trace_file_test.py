@@ -6,10 +6,11 @@ import collections
 import json
 import os
 import pathlib
-import signal
 import subprocess
 import tempfile
 import unittest
+
+from interrupting import interrupt
 
 PROGRAM = os.environ["OBSCURA_PROGRAM"]
 SCENE = pathlib.Path(__file__).resolve().parents[2] / "scenes/cornell"
@@ -144,20 +145,10 @@ class Interrupted(unittest.TestCase):
             folder = pathlib.Path(name)
             command = [PROGRAM, "render", SCENE, "-o", folder / "x.exr", "--trace", folder / "trace.json",
                        *SMALL[:-1], "--spp", str(1 << 20)]
-            run = subprocess.Popen(command, stderr=subprocess.PIPE, text=True,
-                                   env={**os.environ, **{key: value or name for key, value in environment.items()}})
-            try:
-                for line in run.stderr:
-                    if line.startswith(line_start):
-                        run.send_signal(signal.SIGINT)
-                        break
-                messages = run.communicate(timeout=240)[1]
-            finally:
-                run.kill()
-                run.wait()
-            if run.returncode == 3 and os.environ.get("OBSCURA_REQUIRE_DEVICE") != "1":
+            code, _, messages = interrupt(command, line_start, {key: value or name for key, value in environment.items()})
+            if code == 3 and os.environ.get("OBSCURA_REQUIRE_DEVICE") != "1":
                 self.skipTest("there is no OpenCL device: " + messages)
-            self.assertEqual(4, run.returncode, messages)
+            self.assertEqual(4, code, messages)
             return read_events(folder)
 
     def test_interrupted_render_leaves_a_whole_trace(self):
