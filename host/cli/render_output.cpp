@@ -104,7 +104,7 @@ std::vector<RenderProfile> make_profiles(const RenderResult& result, std::span<c
     for (size_t i = 0; i < devices.size(); ++i) {
         const TraceStep step(&trace, TraceCategory::host, "measure the device");
         const DeviceWork& work = result.devices[i];
-        const DeviceRates rates = measure_rates(devices[i].device, devices[i].library, portable);
+        const DeviceRates rates = measure_rates(devices[i].device, devices[i].programs, portable);
         profiles.push_back({rates, stage_figures(work, rates), *work.visits});
     }
     return profiles;

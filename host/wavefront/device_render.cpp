@@ -39,10 +39,10 @@ std::map<std::string, uint64_t> peak_bytes(const Device& device) {
 DeviceRender::DeviceRender(const RenderDevice& device, const RenderJob& job, const Needs& needs)
     : device_(device),
       job_(job),
-      kernels_(prepare_kernels(device.library, needs, job)),
+      kernels_(prepare_kernels(device.programs, needs, job)),
       profiler_(device.device.name()) {
     const bool all = job.settings.needs == NeedsMode::all;
-    if (job.count_visits) visits_.emplace(device.device, device.library, needs, all, job.portable, scene_);
+    if (job.count_visits) visits_.emplace(device.device, device.programs, needs, all, job.portable, scene_);
 }
 
 void DeviceRender::upload(const SceneArrays& arrays, const Bvh& bvh, const QueueShape& shape,
@@ -53,7 +53,7 @@ void DeviceRender::upload(const SceneArrays& arrays, const Bvh& bvh, const Queue
     scene_ = upload_scene(device, arrays, bvh);
     queues_ =
         allocate_queues(device, shape, capacity_, piece.pixel_count, bit_reversed_order(job_.settings.spp));
-    scheduler_.emplace(device, kernels_, scene_, queues_, device_.library.local_size(), profiler_);
+    scheduler_.emplace(device, kernels_, scene_, queues_, device_.programs.local_size(), profiler_);
     scheduler_->observe(job_.observer);
     if (visits_) scheduler_->observe(std::bind_front(&VisitRecorder::observe, &*visits_));
 }

@@ -94,7 +94,7 @@ using RenderCallback = std::function<bool(double fraction, const RayCounts& rays
 
 struct RenderDevice {
     Device& device;
-    ProgramLibrary& library;
+    ProgramLibrary& programs;
 };
 
 // "A, B"
