@@ -24,12 +24,14 @@ def measure(folder, sweep):
     package."""
     if flip_evaluator is None:
         return None
+    paths = {name: folder / "pictures" / f"reference-{name}.png" for name in sweep["references"]}
+    references = {name: read_picture(path) for name, path in paths.items() if path.exists()}
     found = {}
     for name, rows in sweep["methods"].items():
-        reference = folder / "pictures" / f"reference-{sweep['measured_against'][name]}.png"
+        reference = references.get(sweep["measured_against"][name])
         pictures = {row["budget"]: folder / "pictures" / f"{name}-{row['budget']}.png" for row in rows}
         found[name] = {
-            budget: float(flip_evaluator.evaluate(read_picture(reference), read_picture(picture), "LDR", True, False, True,
+            budget: float(flip_evaluator.evaluate(reference, read_picture(picture), "LDR", True, False, True,
                                                   {"ppd": PIXELS_PER_DEGREE})[1])
-            for budget, picture in pictures.items() if picture.exists() and reference.exists()}
+            for budget, picture in pictures.items() if picture.exists() and reference is not None}
     return found

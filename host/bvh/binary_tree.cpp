@@ -9,8 +9,8 @@
 namespace obscura {
 namespace {
 
-V3f center(const Box3f& box) {
-    return box.min * 0.5F + box.max * 0.5F;
+float center(const Box3f& box, int axis) {
+    return box.min[axis] * 0.5F + box.max[axis] * 0.5F;
 }
 
 // What stands for a reference while a set is cut: quicker to sort.
@@ -36,10 +36,8 @@ class Set {
     const Box3f& bounds(uint32_t i) const { return references_[keys_[i].index].bounds; }
 
     void sort_by_center(int axis) {
-        for (Key& key : keys_) {
-            const Box3f& box = references_[key.index].bounds;
-            key.center = box.min[axis] * 0.5F + box.max[axis] * 0.5F;
-        }
+        for (Key& key : keys_)
+            key.center = center(references_[key.index].bounds, axis);
         std::sort(keys_.begin(), keys_.end());
     }
 
@@ -100,8 +98,10 @@ uint32_t best_cut(Set& set) {
 
 uint32_t median_cut(Set& set) {
     Box3f centers;
-    for (uint32_t i = 0; i < set.count(); ++i)
-        centers.extendBy(center(set.bounds(i)));
+    for (uint32_t i = 0; i < set.count(); ++i) {
+        const Box3f& box = set.bounds(i);
+        centers.extendBy(V3f(center(box, 0), center(box, 1), center(box, 2)));
+    }
     set.sort_by_center(static_cast<int>(centers.majorAxis()));
     return set.count() / 2;
 }

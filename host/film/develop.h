@@ -26,8 +26,8 @@ struct LayerInfo {
 const std::vector<LayerInfo>& layer_table();
 const LayerInfo& layer_info(const std::string& name);  // names not in the table: OBSCURA_CHECK
 
-// The sums of a film, or of some of its pixels: plane of each LAYER_* (NO_PLANE = not kept), plane * pixel_count + the pixel's place in the order
-// of visits.
+// The sums of a film, or of some of its pixels: plane of each LAYER_* (NO_PLANE = not kept), plane * pixel_count + the pixel's
+// place in the order of visits.
 struct FilmSums {
     std::array<uint32_t, LAYER_COUNT> planes;
     std::span<const FilmSum> sums;

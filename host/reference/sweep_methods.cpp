@@ -21,16 +21,8 @@ class MethodList {
 
     // Measured against its own model. change: of the settings in common.
     template <typename Change>
-    void add_sampling(const std::string& name, const std::string& meaning, const Change& change) {
-        add({name, meaning, IntegratorKind::obscurance, base_}, change);
-    }
-    // The same pictures from kernels that were compiled otherwise.
-    void add_builds() {
-        add_sampling("needs-all", "lattice with every feature compiled in",
-                     [](RenderSettings& settings) { settings.needs = NeedsMode::all; });
-        add_sampling("portable", "lattice with kernels that use no instructions of one processor",
-                     [](RenderSettings&) {});
-        methods_.back().portable = true;
+    SweepMethod& add_sampling(const std::string& name, const std::string& meaning, const Change& change) {
+        return add({name, meaning, IntegratorKind::obscurance, base_}, change);
     }
     // Measured against all light.
     template <typename Change>
@@ -46,9 +38,9 @@ class MethodList {
 
   private:
     template <typename Change>
-    void add(SweepMethod method, const Change& change) {
+    SweepMethod& add(SweepMethod method, const Change& change) {
         change(method.settings);
-        methods_.push_back(std::move(method));
+        return methods_.emplace_back(std::move(method));
     }
 
     RenderSettings base_;
@@ -71,6 +63,15 @@ void add_splits(MethodList& list) {
                           fmt::format("lattice, {} obscurance ray{} per sample", rays, rays == 1 ? "" : "s"),
                           [rays](RenderSettings& settings) { settings.obscurance_rays = rays; });
     }
+}
+
+// The same pictures from kernels that were compiled otherwise.
+void add_builds(MethodList& list) {
+    list.add_sampling("needs-all", "lattice with every feature compiled in",
+                      [](RenderSettings& settings) { settings.needs = NeedsMode::all; });
+    list.add_sampling("portable", "lattice with kernels that use no instructions of one processor",
+                      [](RenderSettings&) {})
+        .portable = true;
 }
 
 void add_models(MethodList& list, const RenderSettings& base) {
@@ -120,7 +121,7 @@ std::vector<SweepMethod> sweep_methods(const RenderSettings& base) {
     MethodList list(base);
     add_samplers(list);
     add_splits(list);
-    list.add_builds();
+    add_builds(list);
     add_models(list, base);
     list.add_path_tracing();
     return list.take();
