@@ -72,28 +72,32 @@ SHARE_FUNCTION result_share(global const Frame* frame, global const BvhNode* nod
                             global const float* tables, global const float4* rays,
                             global const float4* starts, global float4* out, uint count, Share share) {
     RayStream stream;
+    RayOwners owners;
     for (uint first = share.first; first < share.last; first += stream.count) {
         stream.count = 0u;
         for (uint i = first; i < min(first + STREAM_RAYS, share.last); ++i) {
             const float3 direction = rays[2u * i + 1u].xyz;
+            const float along = start_along(starts[i].xyz, direction.x, direction.y, direction.z);
+            const float across2 = start_across2(starts[i].xyz, along);
+            owners.along[stream.count] = along;
+            owners.across2[stream.count] = across2;
             add_ray(&stream, rays[2u * i].xyz, direction,
-                    distance_limit(starts[i].xyz, direction, frame->obscurance.x));
+                    distance_limit(along, across2, frame->obscurance.x));
         }
         trace_stream(nodes, blocks, &stream, any_occluder_will_do(frame));
         float rho[STREAM_RAYS];
-        for (uint ray = 0u; ray < stream.count; ++ray) {
-            rho[ray] =
-                hit_distance(frame, starts[first + ray].xyz, stream.direction[ray].xyz, stream.hit[ray].x);
-        }
-        apply_falloff(frame, rho, stream.count);
+        falloff_of_hits(frame, &stream, &owners, rho);
         for (uint ray = 0u; ray < stream.count; ++ray) {
             const uint i = first + ray;
             const Hit hit = stream_hit(&stream, ray);
-            const float3 start = starts[i].xyz;
-            bool overflow = false;
-            const float4 result = trace_obscurance(frame, nodes, blocks, triangles, materials, texels, tables,
-                                                   rays[2u * i].xyz - start, start, stream.direction[ray].xyz,
-                                                   hit, rho[ray], &overflow);
+            bool overflow = isnan(hit.t);
+            float4 result;
+            if (!result_without_panes(frame, triangles, materials, texels, tables, hit, rho[ray], &result)) {
+                const float3 start = starts[i].xyz;
+                result = result_through_panes(frame, nodes, blocks, triangles, materials, texels, tables,
+                                              rays[2u * i].xyz - start, start, stream.direction[ray].xyz, hit,
+                                              rho[ray], &overflow);
+            }
             out[i] = hit_lane(hit);
             out[count + i] = (float4)(stream.origin[ray].w, 0.0f, 0.0f, 0.0f);
             out[2u * count + i] = overflow ? (float4)(NAN) : result;

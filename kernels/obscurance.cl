@@ -20,19 +20,21 @@ SHARE_FUNCTION trace_points(global const Frame* frame, global const BvhNode* nod
         next = gather_obscurance_rays(frame, points, paths, counters, share, next, depth, &stream, &owners);
         trace_stream(nodes, blocks, &stream, any_occluder_will_do(frame));
         float rho[STREAM_RAYS];
+        falloff_of_hits(frame, &stream, &owners, rho);
         for (uint ray = 0u; ray < stream.count; ++ray) {
-            rho[ray] = hit_distance(frame, ray_start(frame, points, owners.point[ray]),
-                                    stream.direction[ray].xyz, stream.hit[ray].x);
-        }
-        apply_falloff(frame, rho, stream.count);
-        for (uint ray = 0u; ray < stream.count; ++ray) {
-            const uint i = owners.point[ray];
-            bool overflow = false;
-            results[owners.result[ray]] =
-                trace_obscurance(frame, nodes, blocks, triangles, materials, texels, tables,
-                                 points[POINT_POSITION * frame->crop.w + i].xyz, ray_start(frame, points, i),
-                                 stream.direction[ray].xyz, stream_hit(&stream, ray), rho[ray], &overflow);
-            if (overflow) report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_OBSCURANCE, i);
+            const Hit hit = stream_hit(&stream, ray);
+            bool overflow = isnan(hit.t);
+            float4 result;
+            if (!result_without_panes(frame, triangles, materials, texels, tables, hit, rho[ray], &result)) {
+                const uint i = owners.point[ray];
+                const float3 position = points[POINT_POSITION * frame->crop.w + i].xyz;
+                result = result_through_panes(frame, nodes, blocks, triangles, materials, texels, tables,
+                                              position, ray_start(frame, points, i),
+                                              stream.direction[ray].xyz, hit, rho[ray], &overflow);
+            }
+            results[owners.result[ray]] = result;
+            if (overflow)
+                report_failure(counters, STATUS_STACK_OVERFLOW, STAGE_OBSCURANCE, owners.point[ray]);
         }
     }
 }

@@ -117,8 +117,8 @@ class CheckRay(unittest.TestCase):
 
     def test_lines_of_wrong_results_are_the_same_rays_again(self):
         for queue, file, text, replacement in (
-                ("obscurance", "lib/obscurance_result.clh", "* frame->obscurance.y;", "* (1.001f * frame->obscurance.y);"),
-                ("obscurance", "lib/obscurance_result.clh", "length(start + t * direction)", "length(1.001f * t * direction)"),
+                ("obscurance", "lib/obscurance_result.clh", "= frame->obscurance.y;", "= 1.001f * frame->obscurance.y;"),
+                ("obscurance", "lib/obscurance_ray.clh", "(t + along) * (t + along) + across2", "1.001f * (t * t)"),
                 ("shadow", "lib/queued_rays.clh", "direction.xyz, direction.w);", "direction.xyz, 0.5f * direction.w);")):
             environment = self.planted(file, text, replacement)
             for transform in ({}, {"translation": [1e6, -3e5, 2e6]}):
