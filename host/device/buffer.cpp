@@ -2,7 +2,10 @@
 // See buffer.h.
 #include "device/buffer.h"
 
+#include <sys/mman.h>
+
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "base/error.h"
@@ -20,9 +23,29 @@ uint64_t allocation_bytes(uint64_t bytes) {
     return std::max(bytes, SMALLEST_ALLOCATION_BYTES);
 }
 
+// Of x86-64 and of most ARM systems.
+constexpr uint64_t HUGE_PAGE_BYTES = 2u << 20u;
+
+// Asks the system for huge pages under a buffer whose memory is the host's own and not yet touched. Everything works without
+// them, too, so nothing that fails here is an error.
+void ask_for_huge_pages(const Device& device, const cl::Buffer& buffer, uint64_t bytes) {
+#ifdef MADV_HUGEPAGE
+    if (!device.info().is_cpu || bytes < 2 * HUGE_PAGE_BYTES) return;
+    cl_int code = CL_SUCCESS;
+    void* const memory = device.queue().enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0,
+                                                         bytes, nullptr, nullptr, &code);
+    if (code != CL_SUCCESS) return;
+    void* start = memory;
+    size_t room = bytes;
+    std::align(HUGE_PAGE_BYTES, HUGE_PAGE_BYTES, start, room);
+    madvise(start, room / HUGE_PAGE_BYTES * HUGE_PAGE_BYTES, MADV_HUGEPAGE);
+    device.queue().enqueueUnmapMemObject(buffer, memory);
+#endif
+}
+
 }  // namespace
 
-Buffer::Buffer(Device& device, std::string name, std::string category, uint64_t bytes)
+Buffer::Buffer(Device& device, std::string name, std::string category, uint64_t bytes, Pages pages)
     : name_(std::move(name)), category_(std::move(category)), bytes_(bytes) {
     const DeviceInfo& info = device.info();
     if (bytes > info.max_allocation_bytes)
@@ -38,6 +61,7 @@ Buffer::Buffer(Device& device, std::string name, std::string category, uint64_t 
             "({}).",
             name_, bytes_text(bytes), device.name(), bytes_text(device.memory().current_bytes()),
             error_name(code), code);
+    if (pages == Pages::huge) ask_for_huge_pages(device, handle_, bytes);
     device_ = &device;
     device.memory().add(category_, allocation_bytes(bytes));
 }

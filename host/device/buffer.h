@@ -20,6 +20,10 @@ enum class Transfer {
     enqueued,
 };
 
+// Huge pages, where the system has them, are for what is read here and there as rays go their own ways through a large tree:
+// with pages of 4 KiB they miss the TLB at most nodes. They take longer to get.
+enum class Pages { any, huge };
+
 // Trivially copyable elements, one after the other: vector, array, span, a single-element span.
 template <typename R>
 concept PlainRange = std::ranges::contiguous_range<R> && std::ranges::sized_range<R> &&
@@ -29,16 +33,17 @@ class Buffer {
   public:
     Buffer() = default;  // no device memory yet; can only be assigned to
     // Uninitialised memory. Throws DeviceError naming buffer and sizes where the device can't give it.
-    Buffer(Device& device, std::string name, std::string category, uint64_t bytes);
+    Buffer(Device& device, std::string name, std::string category, uint64_t bytes, Pages pages = Pages::any);
     ~Buffer();
     Buffer(Buffer&& other) noexcept;
     Buffer& operator=(Buffer&& other) noexcept;
 
     // A buffer that holds a copy of values, uploaded before the call returns.
     template <PlainRange R>
-    static Buffer holding(Device& device, std::string name, std::string category, const R& values) {
+    static Buffer holding(Device& device, std::string name, std::string category, const R& values,
+                          Pages pages = Pages::any) {
         const auto bytes = std::as_bytes(std::span(values));
-        Buffer buffer(device, std::move(name), std::move(category), bytes.size());
+        Buffer buffer(device, std::move(name), std::move(category), bytes.size(), pages);
         buffer.write(bytes, 0, Transfer::blocking);
         return buffer;
     }
