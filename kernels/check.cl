@@ -78,7 +78,7 @@ SHARE_FUNCTION result_share(global const Frame* frame, global const BvhNode* nod
         for (uint i = first; i < min(first + STREAM_RAYS, share.last); ++i) {
             const float3 direction = rays[2u * i + 1u].xyz;
             const float along = start_along(starts[i].xyz, direction.x, direction.y, direction.z);
-            const float across2 = start_across2(starts[i].xyz, along);
+            const float across2 = start_across_squared(starts[i].xyz, along);
             owners.along[stream.count] = along;
             owners.across2[stream.count] = across2;
             add_ray(&stream, rays[2u * i].xyz, direction,
