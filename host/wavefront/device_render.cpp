@@ -69,12 +69,13 @@ void DeviceRender::render(Frame frame, std::span<const uint32_t> pixel_order, co
     queues_.pixel_order.upload(pixel_order.subspan(piece.first_pixel, piece.pixel_count));
     if (range.sums.empty()) {
         queues_.film.clear();
+        // Meanwhile the host gets its memory, which takes as long.
+        range.sums.resize(size_t{piece.pixel_count} * queues_.shape.layer_planes);
     } else {
         queues_.film.upload(range.sums);
     }
     const uint64_t done = scheduler_->render(frame, piece.first_pass, piece.pass_count, after_wave);
     range.sample_count += done;
-    range.sums.resize(size_t{piece.pixel_count} * queues_.shape.layer_planes);
     queues_.film.download(range.sums);
 }
 
