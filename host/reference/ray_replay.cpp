@@ -7,6 +7,7 @@
 #include "wavefront/features.h"
 #include "wavefront/frame.h"
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <optional>
@@ -21,7 +22,12 @@ f32x4 lane(const V3f& v, float w) {
     return {v.x, v.y, v.z, w};
 }
 
-// The stages that rays go through, with queues for one path.
+// A stream takes a ray that is alone at a node or in a leaf another way than one of a few, and that another way than one of many
+// (kernels/lib/stream_node.clh, stream_leaf.clh): so many of the ray go down the tree together.
+constexpr std::array<uint32_t, 3> COPIES{1, 4, 16};
+constexpr uint32_t MOST_COPIES = COPIES.back();
+
+// The stages that rays go through, with queues for the copies of one.
 class RayStages {
   public:
     // settings: with their sky; needs: theirs.
@@ -35,41 +41,50 @@ class RayStages {
                              static_cast<uint32_t>(arrays.area_lights.size()),
                              static_cast<uint32_t>(arrays.point_lights.size()),
                              resolve_max_distance(settings_.d_max, job.scene)},
-                            {0, 0, 1, 1}, 1);
-        queues_ = allocate_queues(device, queue_shape(needs_, settings_, plane_count(planes)), 1, 1, {0});
+                            {0, 0, 1, 1}, MOST_COPIES);
+        queues_ =
+            allocate_queues(device, queue_shape(needs_, settings_, plane_count(planes)), MOST_COPIES, 1, {0});
         queues_.frame.upload(std::span(&frame_, 1));
     }
 
     const Frame& frame() const { return frame_; }
 
-    // The stage shadow, with this ray alone in its queue.
-    CapturedRays shadow(const TraceRay& ray) {
-        const uint64_t capacity = queues_.shape.light_samples;
-        const float result_index = std::bit_cast<float>(0u);
-        queues_.shadow_rays.upload(std::vector{lane(ray.origin, result_index)}, SHADOW_ORIGIN * capacity);
-        queues_.shadow_rays.upload(std::vector{lane(ray.direction, ray.t_max)}, SHADOW_DIRECTION * capacity);
+    // The stage shadow, with nothing but this ray in its queue.
+    CapturedRays shadow(const TraceRay& ray, uint32_t copies) {
+        const uint64_t capacity = uint64_t{queues_.shape.light_samples} * MOST_COPIES;
+        std::vector<f32x4> origins;
+        origins.reserve(copies);
+        for (uint32_t result = 0; result < copies; ++result)
+            origins.push_back(lane(ray.origin, std::bit_cast<float>(result)));
+        queues_.shadow_rays.upload(origins, SHADOW_ORIGIN * capacity);
+        queues_.shadow_rays.upload(std::vector(copies, lane(ray.direction, ray.t_max)),
+                                   SHADOW_DIRECTION * capacity);
         DeviceStatus counters{};
-        counters[COUNT_SHADOWS] = 1;
+        counters[COUNT_SHADOWS] = copies;
         queues_.counters.upload(counters);
         const StageInfo& stage = stage_info(Stage::shadow);
         const cl::Kernel kernel = library_.kernel(std::string(stage.name), options(Stage::shadow));
-        launch({device_, kernel, stage.name, 1, library_.local_size()},
+        launch({device_, kernel, stage.name, copies, library_.local_size()},
                stage_arguments(stage, scene_, queues_, {}));
         return {{ray}, {}, {}, {queues_.visibility.contents<f32x4>().front()}};
     }
 
     // The stage obscurance draws its own rays: a kernel beside it takes this one through its functions.
-    CapturedRays obscurance(const TraceRay& ray, const V3f& start) {
-        const Buffer ray_buffer = Buffer::holding(device_, "rays", "check", pack({&ray, 1}));
-        const Buffer start_buffer = Buffer::holding(device_, "starts", "check", std::vector{lane(start, 0)});
-        const Buffer out(device_, "results", "check", 3 * sizeof(f32x4));
+    CapturedRays obscurance(const TraceRay& ray, const V3f& start, uint32_t copies) {
+        const Buffer ray_buffer = Buffer::holding(device_, "rays", "check", pack(std::vector(copies, ray)));
+        const Buffer start_buffer =
+            Buffer::holding(device_, "starts", "check", std::vector(copies, lane(start, 0)));
+        const Buffer out(device_, "results", "check", uint64_t{3} * copies * sizeof(f32x4));
         const cl::Kernel kernel = library_.kernel(
             {"obscurance_results", options(Stage::obscurance), "check.cl", "obscurance_results"});
-        launch(device_, kernel, "obscurance_results", 1, library_.local_size(), queues_.frame, scene_.nodes,
-               scene_.blocks, scene_.triangles, scene_.materials, scene_.texels, scene_.tables, ray_buffer,
-               start_buffer, out, 1u);
+        launch(device_, kernel, "obscurance_results", copies, library_.local_size(), queues_.frame,
+               scene_.nodes, scene_.blocks, scene_.triangles, scene_.materials, scene_.texels, scene_.tables,
+               ray_buffer, start_buffer, out, copies);
         const std::vector<f32x4> found = out.contents<f32x4>();
-        return {{{ray.origin, ray.direction, found[1].x}}, {hit_of(found[0])}, {start}, {found[2]}};
+        return {{{ray.origin, ray.direction, found[copies].x}},
+                {hit_of(found[0])},
+                {start},
+                {found[size_t{2} * copies]}};
     }
 
   private:
@@ -89,8 +104,8 @@ class RayStages {
 
 // What is found with the same ray by queries that have to agree with the nearest hit.
 std::string contradiction_of(const Scene& scene, const DeviceTracer& tracer, const TraceRay& ray,
-                             const TraceHit& nearest) {
-    const bool blocked = tracer.occluded({&ray, 1}).front() != 0;
+                             uint32_t copies, const TraceHit& nearest) {
+    const bool blocked = tracer.occluded(std::vector(copies, ray)).front() != 0;
     if (blocked != (nearest.primitive != NO_PRIMITIVE))
         return blocked ? "any-hit is blocked" : "any-hit is free";
     const TraceHit alone = tracer.closest_alone({&ray, 1}).front();
@@ -106,42 +121,73 @@ void check_reach(const Scene& scene, const TraceRay& given, float reach) {
         scene.unit * static_cast<double>(reach));
 }
 
-// What the ray brings back, through the stage that has such rays; nothing where the render has none.
-std::optional<JudgedResult> judge_result(Device& device, ProgramLibrary& library, const RenderJob& job,
-                                         const GivenRay& given, const HitComparison& hits, const Bvh& bvh) {
-    const TraceRay& ray = given.ray;
-    const bool is_as_shadow_rays = ray.t_max == 1 || std::isinf(ray.t_max);
-    if (job.scene.cameras.empty() || !(given.start || is_as_shadow_rays)) return {};
-    const RenderSettings settings = with_default_sky(job.scene, job.settings);
-    const Needs needs = analyse_needs(job.scene, settings);
-    if (given.start ? !needs.obscurance : !needs.direct()) return {};
-    const ResultComparison results(job.scene, settings, hits);
-    RayStages stages(device, library, job, settings, needs, bvh);
-    if (!given.start) return results.judge_shadow(stages.shadow(ray), 0, true);
-    const CapturedRays captured = stages.obscurance(ray, *given.start);
-    check_reach(job.scene, ray, captured.rays.front().t_max);
-    return results.judge_obscurance(captured, 0, stages.frame(), true);
-}
+// One ray again and again.
+class Replay {
+  public:
+    Replay(Device& device, ProgramLibrary& library, const RenderJob& job, const GivenRay& given)
+        : given_(given),
+          scene_(job.scene),
+          hits_(job.scene),
+          bvh_(build_bvh(job.scene)),
+          tracer_(device, library, bvh_, stage_options(Stage::trace, {}, false, job.portable)) {
+        const bool is_as_shadow_rays = given.ray.t_max == 1 || std::isinf(given.ray.t_max);
+        if (job.scene.cameras.empty() || !(given.start || is_as_shadow_rays)) return;
+        settings_ = with_default_sky(job.scene, job.settings);
+        needs_ = analyse_needs(job.scene, settings_);
+        if (given.start ? !needs_.obscurance : !needs_.direct()) return;
+        results_.emplace(job.scene, settings_, hits_);
+        stages_.emplace(device, library, job, settings_, needs_, bvh_);
+    }
+
+    RayCheck check(uint32_t copies) {
+        const TraceRay& ray = given_.ray;
+        RayCheck check;
+        check.device = tracer_.closest(std::vector(copies, ray)).front();
+        hits_.embree().closest({&ray, 1}, {&check.embree, 1});
+        check.truth = hits_.oracle().closest(ray);
+        const HitTally tally = hits_.compare({&ray, 1}, {&check.device, 1}, {&check.embree, 1}, 1);
+        if (!tally.disagreements.empty()) check.outcome = tally.disagreements.front().outcome;
+        check.contradiction = contradiction_of(scene_, tracer_, ray, copies, check.device);
+        check.result = judge_result(copies);
+        return check;
+    }
+
+  private:
+    // What the ray brings back, through the stage that has such rays; nothing where the render has none.
+    std::optional<JudgedResult> judge_result(uint32_t copies) {
+        const TraceRay& ray = given_.ray;
+        if (!stages_) return {};
+        if (!given_.start) return results_->judge_shadow(stages_->shadow(ray, copies), 0, true);
+        const CapturedRays captured = stages_->obscurance(ray, *given_.start, copies);
+        check_reach(scene_, ray, captured.rays.front().t_max);
+        return results_->judge_obscurance(captured, 0, stages_->frame(), true);
+    }
+
+    const GivenRay& given_;
+    const Scene& scene_;
+    HitComparison hits_;
+    Bvh bvh_;
+    DeviceTracer tracer_;
+    RenderSettings settings_;
+    Needs needs_;
+    // Only where the render has such rays.
+    std::optional<ResultComparison> results_;
+    std::optional<RayStages> stages_;
+};
 
 }  // namespace
 
 RayCheck replay_ray(Device& device, ProgramLibrary& library, const RenderJob& job, const GivenRay& given) {
-    const TraceRay& ray = given.ray;
-    const HitComparison hits(job.scene);
-    const Bvh bvh = build_bvh(job.scene);
-    const DeviceTracer tracer(device, library, bvh, stage_options(Stage::trace, {}, false, job.portable));
-    RayCheck check;
-    check.device = tracer.closest({&ray, 1}).front();
-    hits.embree().closest({&ray, 1}, {&check.embree, 1});
-    check.truth = hits.oracle().closest(ray);
-    const HitTally tally = hits.compare({&ray, 1}, {&check.device, 1}, {&check.embree, 1}, 1);
-    if (!tally.disagreements.empty()) check.outcome = tally.disagreements.front().outcome;
-    check.contradiction = contradiction_of(job.scene, tracer, ray, check.device);
-
-    check.result = judge_result(device, library, job, given, hits, bvh);
-    if (given.start && !check.result)
+    Replay replay(device, library, job, given);
+    RayCheck alone = replay.check(COPIES.front());
+    if (given.start && !alone.result)
         throw InputError("--ray: ten numbers are an obscurance ray, and this render has none");
-    return check;
+    if (alone.is_device_wrong()) return alone;
+    for (const uint32_t copies : std::span(COPIES).subspan(1)) {
+        RayCheck check = replay.check(copies);
+        if (check.is_device_wrong()) return check;
+    }
+    return alone;
 }
 
 }  // namespace obscura

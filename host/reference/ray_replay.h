@@ -28,7 +28,8 @@ struct RayCheck {
     }
 };
 
-// Throws InputError for an obscurance ray of a render without obscurances, or with another reach than the render's.
+// The ray goes down the tree alone, then beside copies of itself, as rays of a stream do; what is told is the first of these whose
+// result is wrong, or what the ray brings back alone. Throws InputError for an obscurance ray of a render without obscurances, or with another reach than the render's.
 RayCheck replay_ray(Device& device, ProgramLibrary& library, const RenderJob& job, const GivenRay& given);
 
 }  // namespace obscura
