@@ -22,7 +22,8 @@ struct Bvh {
     size_t bytes() const { return nodes.size() * sizeof(BvhNode) + blocks.size() * sizeof(TriangleBlock); }
 };
 
-enum class BvhQuality { low, medium, high };  // Morton, binned SAH, SAH with spatial splits
+// Morton; binned SAH; SAH with spatial splits, then subtrees moved to where they fit better.
+enum class BvhQuality { low, medium, high };
 
 // The same scene gives the same bits, whatever the number of threads.
 Bvh build_bvh(const Scene& scene, BvhQuality quality = BvhQuality::high);

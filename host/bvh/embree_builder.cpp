@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "bvh/clip.h"
 #include "bvh/parts.h"
+#include "bvh/reinsertion.h"
 #include "bvh/split_bounds.h"
 
 #include <embree3/rtcore.h>
@@ -201,8 +202,9 @@ BinaryTree build_binary_tree(const Scene& scene, BvhQuality quality) {
         const std::span part = std::span(primitives).subspan(parts[i].first, parts[i].count);
         // Spatial splits make a build three times as long. A scene of one part is built quickly anyway.
         const bool plain = quality == BvhQuality::high && parts.size() > 1 && !has_large_triangles(part);
-        trees[i] = build_part(device, part, vertices, plain ? BvhQuality::medium : quality,
-                              MAX_BINARY_DEPTH - parts[i].depth);
+        const uint32_t max_depth = MAX_BINARY_DEPTH - parts[i].depth;
+        trees[i] = build_part(device, part, vertices, plain ? BvhQuality::medium : quality, max_depth);
+        if (quality == BvhQuality::high) reinsert_subtrees(trees[i], max_depth);
     });
     if (std::ranges::any_of(trees, [](const BinaryTree& tree) { return tree.nodes.empty(); })) return {};
     return trees.size() == 1 ? std::move(trees.front()) : join(top, trees);
