@@ -205,7 +205,7 @@ SceneArrays make_scene_arrays(const Scene& scene, PixelFilter filter) {
 SceneBuffers upload_scene(Device& device, const SceneArrays& arrays, const Bvh& bvh) {
     return {Buffer::holding(device, "nodes", "bvh", bvh.nodes, Pages::huge),
             Buffer::holding(device, "blocks", "bvh", bvh.blocks, Pages::huge),
-            Buffer::holding(device, "triangles", "scene", arrays.triangles),
+            Buffer::holding(device, "triangles", "scene", arrays.triangles, Pages::huge),
             Buffer::holding(device, "materials", "scene", arrays.materials),
             Buffer::holding(device, "area_lights", "scene", arrays.area_lights),
             Buffer::holding(device, "point_lights", "scene", arrays.point_lights),
