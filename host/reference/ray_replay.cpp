@@ -129,7 +129,9 @@ class Replay {
           scene_(job.scene),
           hits_(job.scene),
           bvh_(build_bvh(job.scene)),
-          tracer_(device, library, bvh_, stage_options(Stage::trace, {}, false, job.portable)) {
+          tracer_(device, library, bvh_, stage_options(Stage::trace, {}, false, job.portable)),
+          truth_(hits_.oracle().closest(given.ray)) {
+        hits_.embree().closest({&given.ray, 1}, {&embree_, 1});
         const bool is_as_shadow_rays = given.ray.t_max == 1 || std::isinf(given.ray.t_max);
         if (job.scene.cameras.empty() || !(given.start || is_as_shadow_rays)) return;
         settings_ = with_default_sky(job.scene, job.settings);
@@ -143,8 +145,8 @@ class Replay {
         const TraceRay& ray = given_.ray;
         RayCheck check;
         check.device = tracer_.closest(std::vector(copies, ray)).front();
-        hits_.embree().closest({&ray, 1}, {&check.embree, 1});
-        check.truth = hits_.oracle().closest(ray);
+        check.embree = embree_;
+        check.truth = truth_;
         const HitTally tally = hits_.compare({&ray, 1}, {&check.device, 1}, {&check.embree, 1}, 1);
         if (!tally.disagreements.empty()) check.outcome = tally.disagreements.front().outcome;
         check.contradiction = contradiction_of(scene_, tracer_, ray, copies, check.device);
@@ -168,6 +170,8 @@ class Replay {
     HitComparison hits_;
     Bvh bvh_;
     DeviceTracer tracer_;
+    BruteHit truth_;
+    TraceHit embree_{};
     RenderSettings settings_;
     Needs needs_;
     // Only where the render has such rays.
