@@ -6,60 +6,130 @@
 // A wave is a run of samples in the order "all pixels of the crop for one sample, then the next sample"; so an
 // interrupted render is a whole picture with fewer samples. The pixels are visited tile by tile (pixel_order), so that
 // neighbours in a queue are neighbours in the picture. Pixel filters are sampled, not splatted (Ernst, Stamminger,
-// Greiner 2006), which leaves every pixel one owner.
+// Greiner 2006), which leaves every pixel one owner. Samples are made in batches (lib/batch.clh).
 #include "lib/layers.clh"
 #include "lib/math.clh"
-#include "lib/sampler.clh"
+#include "lib/sample_batch.clh"
+#include "lib/share.clh"
 #include "shared/bvh.h"
 #include "shared/scene.h"
 
-// Offset from the pixel's centre with the filter's density, from its tabulated inverse cdf; the box is exact.
-inline float filter_offset(global const Frame* frame, global const float* tables, float u) {
-    if (!frame_has(frame, FRAME_TABLE_FILTER)) return u - 0.5f;
-    const float x = u * (float)FILTER_TABLE_SIZE;
-    const uint i = min((uint)x, FILTER_TABLE_SIZE - 1u);
-    global const float* offsets = tables + TABLE_FILTER;
-    return mix(offsets[i], offsets[i + 1u], x - (float)i);
+// Camera samples in a row: the first `count`. In the arrays, the first one's values fill what is left.
+typedef struct CameraBatch {
+    uint count;
+    SamplerBatch samplers;
+    uint pixel[BATCH];         // in the crop
+    float x[BATCH], y[BATCH];  // of the pixel's corner in the image, then of the sample
+} CameraBatch;
+
+// first: counted from the wave's first pass and the crop's first pixel.
+inline void find_pixels(global const Frame* frame, global const uint* sample_order,
+                        global const uint* pixel_order, uint first, uint first_pass, CameraBatch* batch) {
+    const uint pixels = frame->crop.z;
+    FOR_BATCH(lane) {
+        const uint position = first + (lane < batch->count ? lane : 0u);
+        const uint pixel = pixel_order[position % pixels];
+        const uint x = frame->image.z + pixel % frame->crop.x;
+        const uint y = frame->image.w + pixel / frame->crop.x;
+        batch->pixel[lane] = pixel;
+        batch->x[lane] = (float)x;
+        batch->y[lane] = (float)y;
+        batch->samplers.seed[lane] = pixel_seed(x, y, frame->seed.x);
+        batch->samplers.sample[lane] = sample_order[first_pass + position / pixels];
+    }
 }
 
-// first_pixel, first_pass: where in that order the wave starts; count: samples in it.
+// Moves positions from the corners of their pixels to where the filter's density puts the samples, from its tabulated
+// inverse cdf; the box is exact.
+inline void add_filter_offsets(global const Frame* frame, global const float* tables, const uint* codes,
+                               float* positions) {
+    if (!frame_has(frame, FRAME_TABLE_FILTER)) {
+        FOR_BATCH(lane) positions[lane] = positions[lane] + 0.5f + (unit_float(codes[lane]) - 0.5f);
+        return;
+    }
+    global const float* offsets = tables + TABLE_FILTER;
+    FOR_BATCH(lane) {
+        const float u = unit_float(codes[lane]) * (float)FILTER_TABLE_SIZE;
+        const uint i = min((uint)u, FILTER_TABLE_SIZE - 1u);
+        positions[lane] = positions[lane] + 0.5f + mix(offsets[i], offsets[i + 1u], u - (float)i);
+    }
+}
+
+// Origins and directions of the rays through points of the image.
+inline void make_rays(global const Frame* frame, const CameraBatch* batch, VectorBatch* origins,
+                      VectorBatch* directions) {
+    const float3 eye = frame->camera_origin.xyz;
+    const float3 forward = frame->camera_forward.xyz;
+    const float3 right = frame->camera_right.xyz;
+    const float3 up = frame->camera_up.xyz;
+    const bool orthographic = as_uint(frame->camera_origin.w) == CAMERA_ORTHOGRAPHIC;
+    const float width = (float)frame->image.x;
+    const float height = (float)frame->image.y;
+    FOR_BATCH(lane) {
+        const float sx = 2.0f * batch->x[lane] / width - 1.0f;
+        const float sy = 1.0f - 2.0f * batch->y[lane] / height;
+        const float shift_x = sx * right.x + sy * up.x;
+        const float shift_y = sx * right.y + sy * up.y;
+        const float shift_z = sx * right.z + sy * up.z;
+        const float x = forward.x + shift_x;
+        const float y = forward.y + shift_y;
+        const float z = forward.z + shift_z;
+        const float scale = rsqrt(x * x + y * y + z * z);
+        origins->x[lane] = orthographic ? eye.x + shift_x : eye.x;
+        origins->y[lane] = orthographic ? eye.y + shift_y : eye.y;
+        origins->z[lane] = orthographic ? eye.z + shift_z : eye.z;
+        directions->x[lane] = orthographic ? forward.x : x * scale;
+        directions->y[lane] = orthographic ? forward.y : y * scale;
+        directions->z[lane] = orthographic ? forward.z : z * scale;
+    }
+}
+
+inline void start_paths(global const Frame* frame, const CameraBatch* batch, const VectorBatch* origins,
+                        const VectorBatch* directions, uint first_slot, global float4* rays,
+                        global float4* paths) {
+    const uint capacity = frame->crop.w;
+    for (uint lane = 0u; lane < batch->count; ++lane) {
+        const uint slot = first_slot + lane;
+        rays[RAY_ORIGIN * capacity + slot] = (float4)(get_vector(origins, lane), as_float(slot));
+        rays[RAY_DIRECTION * capacity + slot] = (float4)(get_vector(directions, lane), 0.0f);
+        paths[path_index(frame, PATH_THROUGHPUT, slot)] = (float4)(1.0f, 1.0f, 1.0f, 0.0f);
+        paths[path_index(frame, PATH_SAMPLE, slot)] = as_float4(
+            (uint4)(batch->samplers.seed[lane], batch->samplers.sample[lane], batch->pixel[lane], 0u));
+    }
+    const uint planes = layer_plane_count(frame);
+    for (uint plane = 0u; plane < planes; ++plane) {
+        global float4* layer = paths + path_index(frame, PATH_LAYERS + plane, first_slot);
+        for (uint lane = 0u; lane < batch->count; ++lane)
+            layer[lane] = (float4)(0.0f);
+    }
+}
+
+SHARE_FUNCTION make_camera_samples(global const Frame* frame, global const float* tables,
+                                   global const uint* sample_order, global const uint* pixel_order,
+                                   global float4* rays, global float4* paths, uint first_pixel,
+                                   uint first_pass, Share share) {
+    CameraBatch batch;
+    for (uint slot = share.first; slot < share.last; slot += BATCH) {
+        batch.count = min(BATCH, share.last - slot);
+        find_pixels(frame, sample_order, pixel_order, first_pixel + slot, first_pass, &batch);
+        SampleSetBatch sets;
+        CodeBatch codes;
+        make_sample_sets(frame, &batch.samplers, DIMENSION_PIXEL, 1u, frame->lattice.xy, false, &sets);
+        draw_codes(&sets, 0u, &codes);
+        add_filter_offsets(frame, tables, codes.x, batch.x);
+        add_filter_offsets(frame, tables, codes.y, batch.y);
+        VectorBatch origins, directions;
+        make_rays(frame, &batch, &origins, &directions);
+        start_paths(frame, &batch, &origins, &directions, slot, rays, paths);
+    }
+}
+
 kernel void camera(global const Frame* frame, global const float* tables, global const uint* sample_order,
                    global const uint* pixel_order, global float4* rays, global float4* paths,
                    uint first_pixel, uint first_pass, uint count) {
-    const uint slot = (uint)get_global_id(0);
-    if (slot >= count) return;
-    const uint pixels = frame->crop.z;
-    const uint capacity = frame->crop.w;
-    const uint position = first_pixel + slot;
-    const uint pixel = pixel_order[position % pixels];
-    const uint pass = first_pass + position / pixels;
-    const uint x = frame->image.z + pixel % frame->crop.x;
-    const uint y = frame->image.w + pixel / frame->crop.x;
-
-    Sampler s;
-    s.seed = pixel_seed(x, y, frame->seed.x);
-    s.sample = sample_order[pass];
-    const float2 u = unit_float2(sample_codes(frame, s, DIMENSION_PIXEL, 0u, 1u, frame->lattice.xy, false));
-    const float px = (float)x + 0.5f + filter_offset(frame, tables, u.x);
-    const float py = (float)y + 0.5f + filter_offset(frame, tables, u.y);
-    const float sx = 2.0f * px / (float)frame->image.x - 1.0f;
-    const float sy = 1.0f - 2.0f * py / (float)frame->image.y;
-
-    float3 origin = frame->camera_origin.xyz;
-    float3 direction = frame->camera_forward.xyz;
-    const float3 shift = sx * frame->camera_right.xyz + sy * frame->camera_up.xyz;
-    if (as_uint(frame->camera_origin.w) == CAMERA_ORTHOGRAPHIC) {
-        origin += shift;
-    } else {
-        direction = normalize(direction + shift);
-    }
-
-    rays[RAY_ORIGIN * capacity + slot] = (float4)(origin, as_float(slot));
-    rays[RAY_DIRECTION * capacity + slot] = (float4)(direction, 0.0f);
-    paths[path_index(frame, PATH_THROUGHPUT, slot)] = (float4)(1.0f, 1.0f, 1.0f, 0.0f);
-    paths[path_index(frame, PATH_SAMPLE, slot)] = as_float4((uint4)(s.seed, s.sample, pixel, 0u));
-    const uint planes = layer_plane_count(frame);
-    for (uint plane = 0u; plane < planes; ++plane) {
-        paths[path_index(frame, PATH_LAYERS + plane, slot)] = (float4)(0.0f);
+    const Share share = share_of(count, 256u);
+    if (share.first < share.last) {
+        make_camera_samples(frame, tables, sample_order, pixel_order, rays, paths, first_pixel, first_pass,
+                            share);
     }
 }

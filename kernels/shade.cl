@@ -120,7 +120,7 @@ inline void continue_paths(global const Frame* frame, const SceneData* scene, co
     SampleSetBatch sets;
     CodeBatch choices;
     make_sample_sets(frame, &batch->samplers, dimension_at(depth, DIMENSION_LOBE), 1u, frame->lattice.xy,
-                     &sets);
+                     true, &sets);
     draw_codes(&sets, 0u, &choices);
     for (uint lane = 0u; lane < batch->count; ++lane)
         continue_path(frame, scene, &batch->vertices[lane], unit_point(&choices, lane), paths, rays);

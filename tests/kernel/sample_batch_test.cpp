@@ -39,7 +39,7 @@ kernel void draw(global const Frame* frame, global uint4* out, uint dimension, u
     }
     SampleSetBatch sets;
     CodeBatch codes;
-    make_sample_sets(frame, &samplers, dimension, n, steps, &sets);
+    make_sample_sets(frame, &samplers, dimension, n, steps, true, &sets);
     draw_codes(&sets, j, &codes);
     for (uint lane = 0u; lane < min(BATCH, count - first); ++lane) {
         const uint2 alone = sample_codes(frame, sampler_of(frame, first + lane), dimension, j, n, steps, true);

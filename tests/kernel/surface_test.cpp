@@ -195,6 +195,33 @@ TEST_F(SurfaceStage, NormalsOfSliversAreThoseOfTheirCorners) {
     }
 }
 
+// Halfway between two vertices whose normals are opposite their sum is zero: no direction.
+TEST_F(SurfaceStage, NormalsThatCancelLeaveTheGeometricOne) {
+    constexpr const char* SOURCE = R"(
+#define NEED_SMOOTH_NORMALS 1
+#include "lib/surface.clh"
+kernel void probe(global const SceneTriangle* triangle, global float4* out, uint count) {
+    if ((uint)get_global_id(0) >= count) return;
+    out[0] = (float4)(make_surface(triangle, 0.5f, 0.0f, (float3)(0.6f, 0.0f, -0.8f)).n_shade, 0.0f);
+})";
+    ProgramLibrary library(device());
+    const cl::Kernel kernel = library.kernel_from_text("normal probe", SOURCE, "probe");
+    SceneTriangle triangle{};
+    triangle.corner[1].x = 1;
+    triangle.corner[2].y = 1;
+    triangle.normal[0] = {1, 0, 0, 0};
+    triangle.normal[1] = {-1, 0, 0, 0};
+    triangle.normal[2] = {0, 0, 1, 0};
+    triangle.ids = {0, 0, NO_LIGHT, TRIANGLE_SMOOTH};
+    const Buffer in = Buffer::holding(device(), "triangle", "test", std::vector<SceneTriangle>{triangle});
+    const Buffer out(device(), "normal", "test", sizeof(f32x4));
+    launch(device(), kernel, "normal probe", 1, library.local_size(), in, out, 1u);
+    const f32x4 n = out.contents<f32x4>().at(0);
+    EXPECT_FLOAT_EQ(n.x, 0);
+    EXPECT_FLOAT_EQ(n.y, 0);
+    EXPECT_FLOAT_EQ(n.z, 1);
+}
+
 // A row of four grey texels, read at texture coordinates that no int holds: some texel's colour, for every wrapping.
 TEST_F(SurfaceStage, FarTextureCoordinatesGiveAColourOfTheTexture) {
     constexpr const char* SOURCE = R"(
