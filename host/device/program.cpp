@@ -143,7 +143,8 @@ ProgramLibrary::Source ProgramLibrary::make_source(const std::string& stage, con
                                                    const std::string& kernel,
                                                    const std::string& options) const {
     refuse_inexact_arithmetic(options);
-    std::string all = "-cl-std=CL1.2 -cl-kernel-arg-info";
+    // Without warnings: PoCL's compiler writes their number to stderr, and all of them before the error that is looked for.
+    std::string all = "-cl-std=CL1.2 -cl-kernel-arg-info -w";
     if (device_.has_correctly_rounded_division()) all += " -cl-fp32-correctly-rounded-divide-sqrt";
     if (!options.empty()) all += " " + options;
     const DeviceInfo& info = device_.info();

@@ -252,6 +252,16 @@ TEST_F(ProgramLibraryOnDevice, PrepareCountsWhatIsNotCached) {
     EXPECT_EQ(library.cache_hit_count(), 1);
 }
 
+// Clang under PoCL writes "1 warning generated." to stderr, in the middle of the line that tells the progress.
+TEST_F(ProgramLibraryOnDevice, WarningsOfACompilerAreNotForUsers) {
+    const KernelFolder folder;
+    folder.write("other.cl", "kernel void other(uint count) {\n    if (count = 1u) return;\n}\n");
+    testing::internal::CaptureStderr();
+    ProgramLibrary(device()).kernel("other");
+    const std::string output = testing::internal::GetCapturedStderr();
+    EXPECT_EQ(output.find("warning"), std::string::npos) << output;
+}
+
 TEST_F(ProgramLibraryOnDevice, BuildErrorNamesStageFileAndLine) {
     const KernelFolder folder;
     folder.write("lib/factor.clh", "inline float factor(void) {\n    return three;\n}\n");
