@@ -124,6 +124,7 @@ SHARE_FUNCTION make_camera_samples(global const Frame* frame, global const float
     }
 }
 
+// first_pixel, first_pass: where in that order the wave starts; count: samples in it.
 kernel void camera(global const Frame* frame, global const float* tables, global const uint* sample_order,
                    global const uint* pixel_order, global float4* rays, global float4* paths,
                    uint first_pixel, uint first_pass, uint count) {
