@@ -26,8 +26,10 @@ LEFT_OUT = [
     "SurfaceStage.RaysThatLeaveATriangleDoNotHitItAgain",  # 1.2 million; TraceStage, NormalsOfSlivers...
     "SurfaceStage.SliversAreLiftedNoHigherThanOtherTriangles",  # 0.6 million; the same two
     "FilmStage.ManySamplesKeepTheirMeanAndVariance",  # 67 million; AddsSlotsOfAFullWave..., DeviationsDontDepend...
-    # And one for its text: Oclgrind's compiler names its own file and line whatever #line says.
+    # And two for their texts: Oclgrind's compiler names its own file and line whatever #line says, and counts its
+    # warnings whatever -w says.
     "ProgramLibraryOnDevice.BuildErrorNamesStageFileAndLine",
+    "ProgramLibraryOnDevice.WarningsOfACompilerAreNotForUsers",
 ]
 # Programs that call the API wrongly on purpose, and what that gives.
 MISUSES = {
