@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stage camera: starts the paths of a wave.
-//   Reads    the wave's range of camera samples
+//   Reads    the wave's range of pixels and passes
 //   Appends  nothing: sample i of the wave is path slot i and ray i
 //   Writes   ray i, path slot i (throughput 1, layers 0)
-// A wave is a run of samples in the order "all pixels of the crop for one sample, then the next sample"; so an
-// interrupted render is a whole picture with fewer samples. The pixels are visited tile by tile (pixel_order), so that
-// neighbours in a queue are neighbours in the picture. Pixel filters are sampled, not splatted (Ernst, Stamminger,
-// Greiner 2006), which leaves every pixel one owner. Samples are made in batches (lib/batch.clh).
+// A wave is some passes over a range of pixels; a pixel's samples are neighbours in it. The pixels are visited tile by
+// tile (pixel_order), so that neighbours in a queue are neighbours in the picture. Pixel filters are sampled, not
+// splatted (Ernst, Stamminger, Greiner 2006), which leaves every pixel one owner. Samples are made in batches (lib/batch.clh).
 #include "lib/layers.clh"
 #include "lib/math.clh"
 #include "lib/sample_batch.clh"
@@ -22,20 +21,24 @@ typedef struct CameraBatch {
     float x[BATCH], y[BATCH];  // of the pixel's corner in the image, then of the sample
 } CameraBatch;
 
-// first: counted from the wave's first pass and the crop's first pixel.
+// Passes over pixels, in the order of visits.
+typedef struct PassRange {
+    uint first_pixel, first_pass, pass_count;
+} PassRange;
+
+// first: counted from the wave's first sample.
 inline void find_pixels(global const Frame* frame, global const uint* sample_order,
-                        global const uint* pixel_order, uint first, uint first_pass, CameraBatch* batch) {
-    const uint pixels = frame->crop.z;
+                        global const uint* pixel_order, PassRange wave, uint first, CameraBatch* batch) {
     FOR_BATCH(lane) {
-        const uint position = first + (lane < batch->count ? lane : 0u);
-        const uint pixel = pixel_order[position % pixels];
+        const uint sample = first + (lane < batch->count ? lane : 0u);
+        const uint pixel = pixel_order[wave.first_pixel + sample / wave.pass_count];
         const uint x = frame->image.z + pixel % frame->crop.x;
         const uint y = frame->image.w + pixel / frame->crop.x;
         batch->pixel[lane] = pixel;
         batch->x[lane] = (float)x;
         batch->y[lane] = (float)y;
         batch->samplers.seed[lane] = pixel_seed(x, y, frame->seed.x);
-        batch->samplers.sample[lane] = sample_order[first_pass + position / pixels];
+        batch->samplers.sample[lane] = sample_order[wave.first_pass + sample % wave.pass_count];
     }
 }
 
@@ -106,12 +109,11 @@ inline void start_paths(global const Frame* frame, const CameraBatch* batch, con
 
 SHARE_FUNCTION make_camera_samples(global const Frame* frame, global const float* tables,
                                    global const uint* sample_order, global const uint* pixel_order,
-                                   global float4* rays, global float4* paths, uint first_pixel,
-                                   uint first_pass, Share share) {
+                                   global float4* rays, global float4* paths, PassRange wave, Share share) {
     CameraBatch batch;
     for (uint slot = share.first; slot < share.last; slot += BATCH) {
         batch.count = min(BATCH, share.last - slot);
-        find_pixels(frame, sample_order, pixel_order, first_pixel + slot, first_pass, &batch);
+        find_pixels(frame, sample_order, pixel_order, wave, slot, &batch);
         SampleSetBatch sets;
         CodeBatch codes;
         make_sample_sets(frame, &batch.samplers, DIMENSION_PIXEL, 1u, frame->lattice.xy, false, &sets);
@@ -124,13 +126,13 @@ SHARE_FUNCTION make_camera_samples(global const Frame* frame, global const float
     }
 }
 
-// first_pixel, first_pass: where in that order the wave starts; count: samples in it.
+// count: samples of the wave.
 kernel void camera(global const Frame* frame, global const float* tables, global const uint* sample_order,
                    global const uint* pixel_order, global float4* rays, global float4* paths,
-                   uint first_pixel, uint first_pass, uint count) {
+                   uint first_pixel, uint first_pass, uint pass_count, uint count) {
     const Share share = share_of(count, 256u);
     if (share.first < share.last) {
-        make_camera_samples(frame, tables, sample_order, pixel_order, rays, paths, first_pixel, first_pass,
-                            share);
+        const PassRange wave = {first_pixel, first_pass, pass_count};
+        make_camera_samples(frame, tables, sample_order, pixel_order, rays, paths, wave, share);
     }
 }

@@ -133,6 +133,19 @@ void Buffer::read(std::span<std::byte> target, uint64_t offset, Transfer transfe
     log("download", target.size(), event);
 }
 
+Buffer::Mapping::Mapping(const Buffer& mapped, uint64_t bytes) : buffer(mapped) {
+    cl_int code = CL_SUCCESS;
+    cl::Event event;
+    memory = mapped.device_->queue().enqueueMapBuffer(mapped.handle_, CL_TRUE, CL_MAP_READ, 0, bytes, nullptr,
+                                                      mapped.event_if_logged(event), &code);
+    check(code, "clEnqueueMapBuffer", fmt::format("reading \"{}\"", mapped.name_), mapped.device_->name());
+    mapped.log("map", bytes, event);
+}
+
+Buffer::Mapping::~Mapping() {
+    buffer.device_->queue().enqueueUnmapMemObject(buffer.handle_, memory);
+}
+
 void Buffer::clear() {
     check_range(0, 0);
     if (bytes_ == 0) return;

@@ -65,6 +65,14 @@ class Buffer {
         download(values);
         return values;
     }
+    // Calls use(span of const T) with the first elements, waiting for them. They lie in the host's memory as long as that
+    // takes: where that is the device's, too, in the buffer's own.
+    template <typename T, typename Use>
+    void read_in_place(size_t count, const Use& use) const {
+        check_range(0, count * sizeof(T));
+        const Mapping mapping(*this, count * sizeof(T));
+        use(std::span(static_cast<const T*>(mapping.memory), count));
+    }
     // Sets every byte to zero, in queue order, without waiting.
     void clear();
 
@@ -74,6 +82,17 @@ class Buffer {
     const cl::Buffer& handle() const { return handle_; }
 
   private:
+    // The first bytes of a buffer, to be read.
+    struct Mapping {
+        Mapping(const Buffer& buffer, uint64_t bytes);
+        ~Mapping();
+        Mapping(const Mapping&) = delete;
+        Mapping& operator=(const Mapping&) = delete;
+
+        const Buffer& buffer;
+        void* memory;
+    };
+
     void write(std::span<const std::byte> source, uint64_t offset, Transfer transfer);
     void read(std::span<std::byte> target, uint64_t offset, Transfer transfer) const;
     void check_range(uint64_t offset, uint64_t size) const;

@@ -20,7 +20,7 @@ class Developer {
 
     // Mean of a layer at a place; 0 where the layer isn't kept.
     f32x4 mean(uint32_t layer, size_t place) const {
-        const uint64_t n = samples(place);
+        const uint64_t n = film_.samples.at(place);
         return n == 0 ? f32x4{} : quotient(layer, place, n);
     }
 
@@ -36,7 +36,7 @@ class Developer {
 
     // Of the samples, without bias; 0 where there are fewer than two.
     f32x4 variance(size_t place) const {
-        const uint64_t n = samples(place);
+        const uint64_t n = film_.samples.at(place);
         return n < 2 ? f32x4{} : quotient(LAYER_VARIANCE, place, n - 1);
     }
 
@@ -49,7 +49,6 @@ class Developer {
     }
 
   private:
-    uint64_t samples(size_t place) const { return film_.samples + (place < film_.pixels_ahead ? 1 : 0); }
     // A layer's sum over a count, rounded once.
     f32x4 quotient(uint32_t layer, size_t place, uint64_t count) const {
         const uint32_t plane = film_.planes[layer];

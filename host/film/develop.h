@@ -26,15 +26,21 @@ struct LayerInfo {
 const std::vector<LayerInfo>& layer_table();
 const LayerInfo& layer_info(const std::string& name);  // names not in the table: OBSCURA_CHECK
 
+// Samples that the pixels of a range have, in the order of visits: those visited already may be some ahead.
+struct SampleCounts {
+    uint64_t passes = 0;  // that all pixels have
+    uint64_t pixels_ahead = 0, passes_ahead = 0;
+
+    uint64_t at(uint64_t place) const { return passes + (place < pixels_ahead ? passes_ahead : 0); }
+};
+
 // The sums of a film, or of some of its pixels: plane of each LAYER_* (NO_PLANE = not kept), plane * pixel_count + the pixel's
 // place in the order of visits.
 struct FilmSums {
     std::array<uint32_t, LAYER_COUNT> planes;
     std::span<const FilmSum> sums;
     std::span<const uint32_t> pixel_order;  // the pixel that has each place, counted in rows
-    // Samples that each pixel has: the first pixels_ahead pixels in that order have one more than the others.
-    uint64_t samples = 0;
-    uint64_t pixels_ahead = 0;
+    SampleCounts samples;
     size_t first_pixel = 0;  // of the image: the one that pixel_order calls 0
 };
 

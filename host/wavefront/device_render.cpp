@@ -62,21 +62,26 @@ void DeviceRender::count_visits_into(PixelNodes& pixel_nodes) {
     if (visits_) visits_->count_into(pixel_nodes);
 }
 
-void DeviceRender::render(Frame frame, std::span<const uint32_t> pixel_order, const Piece& piece,
-                          FilmRange& range, const WaveCallback& after_wave) {
+SampleCounts DeviceRender::render(Frame frame, std::span<const uint32_t> pixel_order, const Piece& piece,
+                                  const WaveCallback& after_wave) {
     frame.crop.z = piece.pixel_count;
     frame.crop.w = capacity_;
     queues_.pixel_order.upload(pixel_order.subspan(piece.first_pixel, piece.pixel_count));
-    if (range.sums.empty()) {
-        queues_.film.clear();
-        // Meanwhile the host gets its memory, which takes as long.
-        range.sums.resize(size_t{piece.pixel_count} * queues_.shape.layer_planes);
-    } else {
-        queues_.film.upload(range.sums);
-    }
-    const uint64_t done = scheduler_->render(frame, piece.first_pass, piece.pass_count, after_wave);
-    range.sample_count += done;
+    return scheduler_->render(frame, piece.first_pass, piece.pass_count, after_wave);
+}
+
+void DeviceRender::upload_sums(const FilmRange& range) {
+    queues_.film.upload(range.sums);
+}
+
+void DeviceRender::download_sums(const Piece& piece, FilmRange& range) const {
+    range.sums.resize(size_t{piece.pixel_count} * queues_.shape.layer_planes);
     queues_.film.download(range.sums);
+}
+
+void DeviceRender::read_sums(uint32_t pixel_count,
+                             const std::function<void(std::span<const FilmSum>)>& use) const {
+    queues_.film.read_in_place<FilmSum>(size_t{pixel_count} * queues_.shape.layer_planes, use);
 }
 
 DeviceWork DeviceRender::work() const {

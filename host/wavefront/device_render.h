@@ -19,8 +19,9 @@ namespace obscura {
 
 // Pixels of a frame that are in one hand at a time, in the order of visits.
 struct FilmRange {
-    std::vector<FilmSum> sums;  // plane * pixels of the range + place in it; empty: no sample yet
-    uint64_t sample_count = 0;
+    SampleCounts samples;
+    // plane * pixels of the range + place in it, while no device has them in its memory.
+    std::vector<FilmSum> sums;
 };
 
 class DeviceRender {
@@ -35,9 +36,15 @@ class DeviceRender {
 
     // Where visits of the next pieces are counted, if they are.
     void count_visits_into(PixelNodes& pixel_nodes);
-    // Adds the piece's samples to those of its range; fewer if after_wave stops it.
-    void render(Frame frame, std::span<const uint32_t> pixel_order, const Piece& piece, FilmRange& range,
-                const WaveCallback& after_wave);
+    // Adds the piece's samples to the sums in the device's memory, which are those of the passes before; fewer if after_wave
+    // stops it. Says what samples the range has then.
+    SampleCounts render(Frame frame, std::span<const uint32_t> pixel_order, const Piece& piece,
+                        const WaveCallback& after_wave);
+    // The sums of the piece's range, on their way from the last device and to the next.
+    void upload_sums(const FilmRange& range);
+    void download_sums(const Piece& piece, FilmRange& range) const;
+    // Those in the device's memory, pixel_count to a plane; until the call ends.
+    void read_sums(uint32_t pixel_count, const std::function<void(std::span<const FilmSum>)>& use) const;
 
     DeviceWork work() const;
 

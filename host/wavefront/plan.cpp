@@ -6,6 +6,7 @@
 #include "shared/types.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace obscura {
@@ -14,8 +15,10 @@ namespace {
 constexpr uint64_t LANE_BYTES = sizeof(f32x4);
 // Below this a wave is all launch overhead.
 constexpr uint64_t MIN_WAVE = 64;
-// Kernels count elements of queues, pixels and samples in 32 bits, and add two such numbers where a wave wraps around
-// the picture (camera, film): half the range keeps the sum exact.
+// Passes that go together: rays of the same pixel go nearly the same way through the same memory.
+constexpr uint32_t MAX_PASSES_TOGETHER = 16;
+// Kernels count elements of queues, pixels and samples in 32 bits, up to the next multiple of a work-group or a share: half
+// the range leaves room for it.
 constexpr uint64_t MAX_INDEX = 0x7fffffff;
 
 // The option that sets the size of the largest queue. Rays and layers alone stay below 1 KiB per slot, which fits
@@ -93,12 +96,25 @@ uint32_t wave_capacity(const QueueShape& shape, uint64_t wanted, uint64_t memory
         std::clamp(std::min(wanted, fits), uint64_t{1}, std::max(sample_count, MIN_WAVE)));
 }
 
-Wave wave_at(uint64_t index, uint32_t capacity, uint32_t pixel_count, uint32_t pass_count) {
-    const uint64_t total = uint64_t{pixel_count} * pass_count;
-    const uint64_t first = index * capacity;
-    if (first >= total) return {};
-    return {static_cast<uint32_t>(first % pixel_count), static_cast<uint32_t>(first / pixel_count),
-            static_cast<uint32_t>(std::min<uint64_t>(capacity, total - first))};
+Wave wave_after(const Wave& wave, uint32_t capacity, uint32_t pixel_count, uint32_t end_pass) {
+    Wave next = wave;
+    next.first_pixel += wave.pixel_count;
+    if (next.first_pixel == pixel_count || wave.sample_count() == 0) {
+        next.first_pixel = 0;
+        next.first_pass += wave.pass_count;
+        const uint32_t as_before = std::clamp(std::bit_floor(next.first_pass), 1u, MAX_PASSES_TOGETHER);
+        next.pass_count =
+            std::min({std::max(as_before, capacity / pixel_count), capacity, end_pass - next.first_pass});
+    }
+    next.pixel_count =
+        next.pass_count == 0 ? 0 : std::min(capacity / next.pass_count, pixel_count - next.first_pixel);
+    return next;
+}
+
+SampleCounts samples_after(const Wave& wave, uint32_t pixel_count) {
+    const uint32_t pixels = wave.first_pixel + wave.pixel_count;
+    if (pixels == pixel_count) return {.passes = uint64_t{wave.first_pass} + wave.pass_count};
+    return {.passes = wave.first_pass, .pixels_ahead = pixels, .passes_ahead = wave.pass_count};
 }
 
 std::vector<PixelRect> film_bands(const PixelRect& rect, uint32_t layer_planes, uint64_t max_film_bytes) {

@@ -3,6 +3,7 @@
 // never a bit of the picture.
 #pragma once
 
+#include "film/develop.h"
 #include "scene/needs.h"
 #include "scene/settings.h"
 #include "wavefront/queue_sizes.h"
@@ -35,15 +36,21 @@ uint64_t largest_bytes_per_slot(const QueueShape& shape);
 uint32_t wave_capacity(const QueueShape& shape, uint64_t wanted, uint64_t memory_bytes,
                        uint64_t max_allocation_bytes, uint64_t sample_count);
 
-// A run of camera samples in the order "all pixels for one pass, then the next pass".
+// Camera samples that go through the stages together: some passes over a range of pixels, in the order of visits. A pixel's
+// samples are neighbours.
 struct Wave {
-    uint32_t first_pixel = 0;
-    uint32_t first_pass = 0;
-    uint32_t count = 0;
+    uint32_t first_pixel = 0, pixel_count = 0;
+    uint32_t first_pass = 0, pass_count = 0;
+    uint32_t sample_count() const { return pixel_count * pass_count; }
 };
 
-// Wave number `index` of the run; count 0 past the end.
-Wave wave_at(uint64_t index, uint32_t capacity, uint32_t pixel_count, uint32_t pass_count);
+// The wave that follows one over so many pixels, up to end_pass; no samples past the end. The first follows an empty one,
+// which has but the first pass. All pixels have some passes before any has more: as many as a wave holds of all pixels, or as
+// the pixels have already, up to sixteen; so the samples of a stopped picture differ twofold at most, and soon hardly.
+Wave wave_after(const Wave& wave, uint32_t capacity, uint32_t pixel_count, uint32_t end_pass);
+
+// Once the wave is done, and all before it.
+SampleCounts samples_after(const Wave& wave, uint32_t pixel_count);
 
 // Horizontal bands of rect whose film fits into max_film_bytes and whose pixels 31 bits count; one band in nearly every
 // render.

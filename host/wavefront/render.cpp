@@ -62,13 +62,15 @@ void render_band(Team& team, const FrameInput& input, const PixelRect& band, con
     for (const FilmRange& range : film) {
         const size_t count = std::min<size_t>(piece.pixel_count, pixels - place);
         const auto order = std::span(pixel_order).subspan(place, count);
-        const uint64_t passes = range.sample_count / count, ahead = range.sample_count % count;
         place += count;
-        result.samples_per_pixel = std::min(result.samples_per_pixel, static_cast<uint32_t>(passes));
-        if (range.sums.empty()) continue;
-        develop({input.planes, range.sums, order, passes, ahead, first_pixel}, result.image);
+        result.samples_per_pixel =
+            std::min(result.samples_per_pixel, static_cast<uint32_t>(range.samples.passes));
+        if (range.samples.at(0) == 0) continue;
+        team.read_sums(range, static_cast<uint32_t>(count), [&](std::span<const FilmSum> sums) {
+            develop({input.planes, sums, order, range.samples, first_pixel}, result.image);
+        });
         if (!pixel_nodes.empty())
-            average_nodes(pixel_nodes, order, passes, ahead,
+            average_nodes(pixel_nodes, order, range.samples,
                           std::span(result.nodes_per_sample).subspan(first_pixel));
     }
     result.complete = result.complete && result.samples_per_pixel == spp;
@@ -169,14 +171,14 @@ RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob
     Team team(devices, job, result.needs, rect.pixel_count() * settings.spp, after_wave);
     result.seconds.compile = compile_watch.seconds();
     const SceneArrays arrays = make_scene_arrays(job.scene, settings.filter);
-    const Bvh& bvh = building.get();
-    result.seconds.build = bvh.build_seconds;
-
-    const Stopwatch upload_watch;
     const QueueShape shape = queue_shape(result.needs, settings, plane_count(planes));
     const std::vector<PixelRect> bands = film_bands(rect, shape.layer_planes, smallest_allocation(devices));
     const PieceSize piece = piece_size(static_cast<uint32_t>(bands.front().pixel_count()), settings.spp,
                                        job.wave_size, devices.size());
+    const Bvh& bvh = building.get();
+    result.seconds.build = bvh.build_seconds;
+
+    const Stopwatch upload_watch;
     team.upload(arrays, bvh, shape, piece);
     result.seconds.upload = upload_watch.seconds();
 

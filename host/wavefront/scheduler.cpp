@@ -54,30 +54,29 @@ void Scheduler::run_stages(StageTime time, const Work& work) {
     }
 }
 
-uint64_t Scheduler::render(const Frame& frame, uint32_t first_pass, uint32_t pass_count,
-                           const WaveCallback& after_wave) {
+SampleCounts Scheduler::render(const Frame& frame, uint32_t first_pass, uint32_t pass_count,
+                               const WaveCallback& after_wave) {
     queues_.frame.upload(std::span(&frame, 1));
     const uint32_t pixels = frame.crop.z;
+    const auto next = [&](const Wave& wave) {
+        return wave_after(wave, frame.crop.w, pixels, first_pass + pass_count);
+    };
+    SampleCounts samples{.passes = first_pass};
     uint64_t done = 0;
-    for (uint64_t index = 0;; ++index) {
-        Wave wave = wave_at(index, frame.crop.w, pixels, pass_count);
-        if (wave.count == 0) break;
-        wave.first_pass += first_pass;
+    for (Wave wave = next({.first_pass = first_pass}); wave.sample_count() > 0; wave = next(wave)) {
         run_wave(frame, wave);
-        done += wave.count;
+        samples = samples_after(wave, pixels);
+        done += wave.sample_count();
         if (!after_wave(done, rays_)) break;
     }
-    return done;
+    return samples;
 }
 
 void Scheduler::run_wave(const Frame& frame, const Wave& wave) {
     const TraceStep step(device_.trace(), TraceCategory::host, "wave", {"number", wave_count_++});
-    const Work samples{.first_pixel = wave.first_pixel,
-                       .first_pass = wave.first_pass,
-                       .count = wave.count,
-                       .pixels = frame.crop.z};
+    const Work samples{wave, wave.sample_count(), 0};
     run_stages(StageTime::wave_start, samples);
-    rays_.camera += wave.count;
+    rays_.camera += samples.count;
     Work rays = samples;
     for (; rays.depth <= frame.seed.z && rays.count > 0; ++rays.depth) {
         rays.count = run_depth(frame, rays);

@@ -51,10 +51,10 @@ class Scheduler {
     Scheduler(Device& device, const StageKernels& kernels, const SceneBuffers& scene, Queues& queues,
               uint32_t local_size, Profiler& profiler);
 
-    // Adds these passes over the frame's pixels to the sums in queues.film, which are those of the passes before. Returns the
-    // samples done: all, or fewer if after_wave stopped it. Throws DeviceError when a kernel reports a failure.
-    uint64_t render(const Frame& frame, uint32_t first_pass, uint32_t pass_count,
-                    const WaveCallback& after_wave);
+    // Adds these passes over the frame's pixels to the sums in queues.film, which are those of the passes before, and says what
+    // samples the pixels have then: all, or fewer if after_wave stopped it. Throws DeviceError when a kernel reports a failure.
+    SampleCounts render(const Frame& frame, uint32_t first_pass, uint32_t pass_count,
+                        const WaveCallback& after_wave);
 
     const RayCounts& rays() const { return rays_; }
     void observe(DepthObserver observer) { observer_ = std::move(observer); }

@@ -27,7 +27,9 @@ constexpr Argument results{"results", &Queues::results};
 constexpr Argument counters{"counters", &Queues::counters};
 constexpr Argument sums{"sums", &Queues::film};
 constexpr Argument first_pixel{"first_pixel", &Work::first_pixel};
+constexpr Argument pixel_count{"pixel_count", &Work::pixel_count};
 constexpr Argument first_pass{"first_pass", &Work::first_pass};
+constexpr Argument pass_count{"pass_count", &Work::pass_count};
 constexpr Argument count{"count", &Work::count};
 constexpr Argument depth{"depth", &Work::depth};
 
@@ -42,7 +44,7 @@ uint64_t each_light_sample(const Work& work, const QueueShape& shape) {
     return uint64_t{work.count} * shape.light_samples;
 }
 uint64_t each_pixel(const Work& work, const QueueShape&) {
-    return std::min(work.count, work.pixels);
+    return work.pixel_count;
 }
 
 uint64_t shadow_rays_counted(const DeviceStatus& status, const QueueShape&) {
@@ -66,7 +68,7 @@ using enum StageTime;
 // clang-format off
 constexpr std::array<StageInfo, STAGE_COUNT> STAGES{{
     {Stage::camera, "camera", wave_start, {"camera", "camera"}, "", always, each, nullptr, nothing,
-     {frame, tables, sample_order, pixel_order, rays, paths, first_pixel, first_pass, count}},
+     {frame, tables, sample_order, pixel_order, rays, paths, first_pixel, first_pass, pass_count, count}},
 
     {Stage::trace, "trace", each_depth, {"trace_camera", "trace_glossy"}, "", always, each, nullptr, nothing,
      {frame, nodes, blocks, rays, counters, count}},
@@ -94,7 +96,7 @@ constexpr std::array<StageInfo, STAGE_COUNT> STAGES{{
      {frame, rays, visibility, results, paths, count, depth}},
 
     {Stage::film, "film", wave_end, {"film", "film"}, "", always, each_pixel, nullptr, nothing,
-     {frame, paths, sums, counters, first_pixel, first_pass, count}},
+     {frame, paths, sums, counters, first_pixel, pixel_count, first_pass, pass_count}},
 }};
 // clang-format on
 

@@ -7,6 +7,7 @@
 #include "device/scene_buffers.h"
 #include "scene/needs.h"
 #include "shared/wavefront.h"
+#include "wavefront/plan.h"
 #include "wavefront/queues.h"
 
 #include <array>
@@ -32,12 +33,9 @@ constexpr uint32_t STAGE_COUNT = 7;
 enum class StageTime { wave_start, each_depth, wave_end };
 
 // What a launch is told beside its buffers.
-struct Work {
-    uint32_t first_pixel = 0;  // of the wave
-    uint32_t first_pass = 0;   // of the wave's first pixel
-    uint32_t count = 0;        // camera samples of the wave, or rays of the depth
+struct Work : Wave {
+    uint32_t count = 0;  // camera samples of the wave, or rays of the depth
     uint32_t depth = 0;
-    uint32_t pixels = 0;  // of the frame: film has an item for each that the wave samples
 };
 
 // A kernel's parameter: its name, and where its value comes from.

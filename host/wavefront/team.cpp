@@ -26,7 +26,7 @@ void Team::render(const Frame& frame, std::span<const uint32_t> pixel_order, Wor
     for (const auto& member : members_)
         member->count_visits_into(pixel_nodes);
     // One device stays in this thread: Oclgrind 21.10 crashes when another thread than the one that opened it uses it.
-    if (members_.size() == 1) return take_pieces(0, frame, pixel_order, list, film);
+    if (is_one()) return take_pieces(0, frame, pixel_order, list, film);
     std::vector<std::future<void>> at_work;
     at_work.reserve(members_.size());
     for (size_t member = 0; member < members_.size(); ++member)
@@ -52,7 +52,10 @@ void Team::take_pieces(size_t member, const Frame& frame, std::span<const uint32
             if (!report(member, done - std::exchange(done_before, done), rays)) list.stop();
             return !list.is_stopped();
         };
-        members_[member]->render(frame, pixel_order, *piece, film[piece->range], after_wave);
+        FilmRange& range = film[piece->range];
+        if (piece->first_pass > 0) members_[member]->upload_sums(range);
+        range.samples = members_[member]->render(frame, pixel_order, *piece, after_wave);
+        if (!is_one()) members_[member]->download_sums(*piece, range);
         list.finish(*piece);
     }
 }
@@ -66,6 +69,12 @@ bool Team::report(size_t member, uint64_t samples, const RayCounts& rays) {
         sum += of_member;
     const double fraction = static_cast<double>(samples_done_) / static_cast<double>(sample_count_);
     return after_wave_(fraction, sum) || samples_done_ == sample_count_;
+}
+
+void Team::read_sums(const FilmRange& range, uint32_t pixel_count,
+                     const std::function<void(std::span<const FilmSum>)>& use) const {
+    if (is_one()) return members_.front()->read_sums(pixel_count, use);
+    use(range.sums);
 }
 
 std::vector<DeviceWork> Team::work() const {

@@ -6,6 +6,7 @@
 #include "wavefront/render.h"
 #include "wavefront/work_list.h"
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -26,9 +27,15 @@ class Team {
     void render(const Frame& frame, std::span<const uint32_t> pixel_order, WorkList& list,
                 std::vector<FilmRange>& film, PixelNodes& pixel_nodes);
 
+    // The sums of a range that has been rendered, until the call ends.
+    void read_sums(const FilmRange& range, uint32_t pixel_count,
+                   const std::function<void(std::span<const FilmSum>)>& use) const;
+
     std::vector<DeviceWork> work() const;
 
   private:
+    // Then the one range of a frame stays where it is.
+    bool is_one() const { return members_.size() == 1; }
     void take_pieces(size_t member, const Frame& frame, std::span<const uint32_t> pixel_order, WorkList& list,
                      std::vector<FilmRange>& film);
     // The member has finished so many samples more, and has traced these rays in all. False: stop.

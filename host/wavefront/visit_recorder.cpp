@@ -53,13 +53,13 @@ double mean(const RayVisits::Histogram& histogram) {
     return rays > 0 ? sum / rays : 0;
 }
 
-void average_nodes(const PixelNodes& pixel_nodes, std::span<const uint32_t> pixel_order, uint64_t passes,
-                   uint64_t pixels_ahead, std::span<float> nodes_per_sample) {
+void average_nodes(const PixelNodes& pixel_nodes, std::span<const uint32_t> pixel_order,
+                   const SampleCounts& samples, std::span<float> nodes_per_sample) {
     for (size_t place = 0; place < pixel_order.size(); ++place) {
         const uint32_t pixel = pixel_order[place];
-        const uint64_t samples = passes + (place < pixels_ahead ? 1 : 0);
         const auto nodes = static_cast<double>(pixel_nodes[pixel]);
-        if (samples > 0) nodes_per_sample[pixel] = static_cast<float>(nodes / static_cast<double>(samples));
+        const auto count = static_cast<double>(samples.at(place));
+        if (count > 0) nodes_per_sample[pixel] = static_cast<float>(nodes / count);
     }
 }
 

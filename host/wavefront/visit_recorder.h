@@ -41,10 +41,9 @@ struct RenderVisits {
 // Nodes that all rays of a pixel visit; pixels of a band in rows.
 using PixelNodes = std::vector<uint64_t>;
 
-// Per sample, of those pixels: as many of each as its range has passes, one more of the first pixels_ahead. Both arrays of
-// numbers are in the order of rows that pixel_order counts in.
-void average_nodes(const PixelNodes& pixel_nodes, std::span<const uint32_t> pixel_order, uint64_t passes,
-                   uint64_t pixels_ahead, std::span<float> nodes_per_sample);
+// Per sample, of those pixels. Both arrays of numbers are in the order of rows that pixel_order counts in.
+void average_nodes(const PixelNodes& pixel_nodes, std::span<const uint32_t> pixel_order,
+                   const SampleCounts& samples, std::span<float> nodes_per_sample);
 
 class VisitRecorder {
   public:

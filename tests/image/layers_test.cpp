@@ -223,11 +223,12 @@ TEST_F(Layers, StoppedRenderIsAWholePicture) {
 TEST_F(Layers, StoppedRenderKeepsExactMeans) {
     // All pixels see the same constant: whatever number of samples each has, the mean is the constant.
     const Scene scene = furnace_sphere(Rgb(0.5f), Rgb(1, 2, 4));
-    const RenderResult stopped = render_until(scene, picture(16, 12, 8, 1), 16 * 12 + 7, 0.1);
+    const RenderResult stopped = render_until(scene, picture(16, 12, 8, 1), 100, 0.3);
     EXPECT_FALSE(stopped.complete);
+    EXPECT_EQ(stopped.samples_per_pixel, 2u);
     EXPECT_EQ(channel(stopped.image, "", 3), std::vector<double>(16 * 12, 1.0));
     EXPECT_EQ(channel(stopped.image, "emission", 2), std::vector<double>(16 * 12, 4.0));
-    EXPECT_EQ(stopped.rays.camera, uint64_t{16 * 12 + 7});
+    EXPECT_EQ(stopped.rays.camera, uint64_t{16 * 12 * 2 + 100}) << "two more of fifty pixels";
 }
 
 TEST_F(Layers, FinishedRenderIsComplete) {

@@ -70,7 +70,7 @@ class Trace(unittest.TestCase):
         transfers = {event["name"]: event["args"]["bytes"] for event in slices(self.events, "transfer", DEVICE)}
         self.assertGreater(transfers["upload nodes"], 0)
         self.assertEqual(transfers["clear counters"], transfers["download counters"])
-        self.assertEqual(transfers["clear film"], transfers["download film"])
+        self.assertEqual(self.stats["bytes"]["film"], transfers["map film"])
 
     def test_programs_tell_whether_they_were_compiled(self):
         for events, cache in ((self.cold, "miss"), (self.events, "hit")):

@@ -52,6 +52,18 @@ TEST_F(DeviceBuffer, EnqueuedTransfersAreDoneAfterFinish) {
     EXPECT_EQ(back, values);
 }
 
+TEST_F(DeviceBuffer, ReadingInPlaceSeesWhatWasEnqueuedBefore) {
+    Buffer buffer = Buffer::holding(device(), "values", "scene", counting(1000));
+    const std::array<uint32_t, 2> two{100, 200};
+    buffer.upload(two, 3, Transfer::enqueued);
+    std::vector<uint32_t> seen;
+    buffer.read_in_place<uint32_t>(
+        6, [&](std::span<const uint32_t> values) { seen.assign(values.begin(), values.end()); });
+    EXPECT_EQ(seen, (std::vector<uint32_t>{1, 2, 3, 100, 200, 6}));
+    buffer.upload(counting(1), 3);
+    EXPECT_EQ(buffer.contents<uint32_t>().at(3), 1u) << "the buffer is the device's again";
+}
+
 TEST_F(DeviceBuffer, ClearSetsEveryByteToZero) {
     for (const size_t bytes : {1u, 3u, 16u, 4097u}) {
         Buffer buffer = Buffer::holding(device(), "values", "scene", std::vector<uint8_t>(bytes, 0xa5));

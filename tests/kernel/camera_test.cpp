@@ -14,6 +14,7 @@ namespace obscura {
 namespace {
 
 constexpr uint32_t WIDTH = 6, HEIGHT = 4, SPP = 4, PIXELS = WIDTH * HEIGHT, SAMPLES = PIXELS * SPP;
+constexpr Wave ALL_SAMPLES{.pixel_count = PIXELS, .pass_count = SPP};
 const std::vector<uint32_t> ORDER = tiled_pixel_order(WIDTH, HEIGHT);  // of the pixels in a queue
 const V3d EYE(1, 2, 3), TARGET(0, 0.5, -1);
 
@@ -64,9 +65,9 @@ class CameraStage : public test::DeviceTest {
 
 TEST_F(CameraStage, FillsAQueueExactlyWithRaysThroughTheirPixels) {
     test::StageBench wave = bench(SAMPLES);
-    wave.run_camera(0, 0, SAMPLES);
+    wave.run_camera(ALL_SAMPLES);
     for (uint32_t slot = 0; slot < SAMPLES; ++slot) {
-        const uint32_t pixel = ORDER[slot % PIXELS];
+        const uint32_t pixel = ORDER[slot / SPP];
         EXPECT_EQ(test::bits(wave.rays().at(RAY_ORIGIN, slot).w), slot);
         EXPECT_EQ(test::xyz_of(wave.rays().at(RAY_ORIGIN, slot)), V3f(EYE));
         EXPECT_NEAR(test::xyz_of(wave.rays().at(RAY_DIRECTION, slot)).length(), 1, 2e-7);
@@ -80,15 +81,15 @@ TEST_F(CameraStage, FillsAQueueExactlyWithRaysThroughTheirPixels) {
 
 TEST_F(CameraStage, StartsPathsWithEmptyLayers) {
     test::StageBench wave = bench(SAMPLES);
-    wave.run_camera(0, 0, SAMPLES);
+    wave.run_camera(ALL_SAMPLES);
     std::set<uint32_t> seeds, samples;
     for (uint32_t slot = 0; slot < SAMPLES; ++slot) {
         EXPECT_EQ(test::bits(wave.paths().at(PATH_THROUGHPUT, slot)), test::bits(f32x4{1, 1, 1, 0}));
         const auto sample = test::bits(wave.paths().at(PATH_SAMPLE, slot));
-        EXPECT_EQ(sample[2], ORDER[slot % PIXELS]);
+        EXPECT_EQ(sample[2], ORDER[slot / SPP]);
         EXPECT_EQ(sample[3], 0U) << "flags";
         seeds.insert(sample[0]);
-        if (slot % PIXELS == 5) samples.insert(sample[1]);
+        if (slot / SPP == 5) samples.insert(sample[1]);
         EXPECT_TRUE(wave.paths().untouched(PATH_AMBIENT, slot)) << "shade writes it";
         for (uint32_t layer = 0; layer < BEAUTY_LAYERS; ++layer)
             EXPECT_EQ(test::bits(wave.layer(layer, slot)), test::bits(f32x4{})) << "layer " << layer;
@@ -97,19 +98,20 @@ TEST_F(CameraStage, StartsPathsWithEmptyLayers) {
     EXPECT_EQ(samples, (std::set<uint32_t>{0, 1, 2, 3})) << "all samples of a pixel";
 }
 
-// Samples 30..51 of the run, in a wave of their own with more room than they need.
-TEST_F(CameraStage, WavesCutTheSameRun) {
+// Two passes over some pixels, in a wave of their own with more room than they need.
+TEST_F(CameraStage, WavesCutTheSamePicture) {
     test::StageBench whole = bench(SAMPLES);
-    whole.run_camera(0, 0, SAMPLES);
+    whole.run_camera(ALL_SAMPLES);
     test::StageBench part = bench(25);
-    part.run_camera(30 % PIXELS, 30 / PIXELS, 22);
+    part.run_camera({.first_pixel = 7, .pixel_count = 11, .first_pass = 1, .pass_count = 2});
     for (uint32_t slot = 0; slot < 22; ++slot) {
+        const uint32_t same = (7 + slot / 2) * SPP + 1 + slot % 2;
         for (const int lane : {RAY_ORIGIN, RAY_DIRECTION}) {
             const auto l = static_cast<uint32_t>(lane);
-            EXPECT_EQ(test::xyz_of(part.rays().at(l, slot)), test::xyz_of(whole.rays().at(l, 30 + slot)));
+            EXPECT_EQ(test::xyz_of(part.rays().at(l, slot)), test::xyz_of(whole.rays().at(l, same)));
         }
         EXPECT_EQ(test::bits(part.paths().at(PATH_SAMPLE, slot)),
-                  test::bits(whole.paths().at(PATH_SAMPLE, 30 + slot)));
+                  test::bits(whole.paths().at(PATH_SAMPLE, same)));
     }
     for (uint32_t slot = 22; slot < 25; ++slot) {
         EXPECT_TRUE(part.rays().untouched(RAY_ORIGIN, slot));
@@ -119,11 +121,11 @@ TEST_F(CameraStage, WavesCutTheSameRun) {
 
 TEST_F(CameraStage, CropHasTheRaysOfTheWholePicture) {
     test::StageBench whole = bench(PIXELS);
-    whole.run_camera(0, 0, PIXELS);
+    whole.run_camera({.pixel_count = PIXELS, .pass_count = 1});
     RenderSettings settings = small_settings();
     settings.crop = {0.5, 1, 0.25, 0.75};  // columns 3..5, rows 1..2
     test::StageBench crop = bench(6, settings);
-    crop.run_camera(0, 0, 6);
+    crop.run_camera({.pixel_count = 6, .pass_count = 1});
     for (uint32_t slot = 0; slot < 6; ++slot) {
         const uint32_t pixel = tiled_pixel_order(3, 2)[slot];
         const uint32_t in_whole = (1 + pixel / 3) * WIDTH + 3 + pixel % 3;
@@ -138,7 +140,7 @@ TEST_F(CameraStage, CropHasTheRaysOfTheWholePicture) {
 TEST_F(CameraStage, OrthographicRaysAreParallelAndStartInTheirPixels) {
     scene_ = scene_with_camera(true);
     test::StageBench wave = bench(PIXELS);
-    wave.run_camera(0, 0, PIXELS);
+    wave.run_camera({.pixel_count = PIXELS, .pass_count = 1});
     const V3f forward((TARGET - EYE).normalized());
     for (uint32_t slot = 0; slot < PIXELS; ++slot) {
         EXPECT_LT((test::xyz_of(wave.rays().at(RAY_DIRECTION, slot)) - forward).length(), 2e-7);
@@ -153,10 +155,10 @@ TEST_F(CameraStage, TentFilterSpreadsRaysOverItsRadius) {
     RenderSettings settings = small_settings();
     settings.filter = PixelFilter::tent;
     test::StageBench wave = bench(SAMPLES, settings);
-    wave.run_camera(0, 0, SAMPLES);
+    wave.run_camera(ALL_SAMPLES);
     double farthest = 0;
     for (uint32_t slot = 0; slot < SAMPLES; ++slot) {
-        const double middle = ORDER[slot % PIXELS] % WIDTH + 0.5;
+        const double middle = ORDER[slot / SPP] % WIDTH + 0.5;
         farthest = std::max(farthest, std::abs(position(wave, slot).x - middle));
     }
     EXPECT_GT(farthest, 0.5);

@@ -32,8 +32,8 @@ class FilmStage : public test::DeviceTest {
         return settings;
     }
 
-    // A wave over a picture of 3 x 2 pixels; slot s holds values of which the order of summation shows.
-    test::StageBench bench(uint32_t capacity) {
+    // A wave over a picture of 3 x 2 pixels, which has had passes already; slot s holds values of which the order of summation shows.
+    test::StageBench film_bench(uint32_t capacity) {
         test::StageBench bench(device(), one_quad(), settings_of_picture(), capacity);
         for (uint32_t slot = 0; slot < capacity; ++slot) {
             for (uint32_t layer = 0; layer < BEAUTY_LAYERS; ++layer)
@@ -64,21 +64,21 @@ class FilmStage : public test::DeviceTest {
         }
     };
     // The sums that the contract asks for, and their excess.
-    static std::pair<f32x4, f32x4> expected(uint32_t layer, uint32_t pixel, uint32_t first_pixel,
-                                            uint32_t count) {
-        Sum x{1}, y{2}, z{static_cast<float>(pixel)}, w{0};
-        for (uint32_t slot = 0; slot < count; ++slot) {
-            if ((first_pixel + slot) % PIXELS != pixel) continue;
+    static std::pair<f32x4, f32x4> expected(uint32_t layer, uint32_t pixel, const Wave& wave) {
+        const float before = wave.first_pass > 0 ? 1.0f : 0.0f;
+        Sum x{before}, y{2 * before}, z{static_cast<float>(pixel) * before}, w{0};
+        for (uint32_t slot = 0; slot < wave.sample_count(); ++slot) {
+            if (wave.first_pixel + slot / wave.pass_count != pixel) continue;
             const f32x4 v = value(layer, slot);
             x.add(v.x), y.add(v.y), z.add(v.z), w.add(v.w);
         }
         return {{x.sum, y.sum, z.sum, w.sum}, {x.excess, y.excess, z.excess, w.excess}};
     }
 
-    static void expect_sums(test::StageBench& bench, uint32_t first_pixel, uint32_t count) {
-        for (uint32_t pixel = 0; pixel < PIXELS; ++pixel) {
+    static void expect_sums(test::StageBench& bench, const Wave& wave, uint32_t first, uint32_t end) {
+        for (uint32_t pixel = first; pixel < end; ++pixel) {
             for (uint32_t layer = 0; layer < BEAUTY_LAYERS; ++layer) {
-                const auto [sum, excess] = expected(layer, pixel, first_pixel, count);
+                const auto [sum, excess] = expected(layer, pixel, wave);
                 EXPECT_EQ(test::bits(bench.film_layer(layer, pixel)), test::bits(sum))
                     << "pixel " << pixel << ", layer " << layer;
                 EXPECT_EQ(test::bits(bench.film_excess(layer, pixel)), test::bits(excess))
@@ -89,59 +89,63 @@ class FilmStage : public test::DeviceTest {
 };
 
 TEST_F(FilmStage, AddsSlotsOfAFullWaveInAscendingOrder) {
-    test::StageBench wave = bench(3 * PIXELS);
-    wave.run_film(0, 0, 3 * PIXELS);
-    expect_sums(wave, 0, 3 * PIXELS);
-    EXPECT_TRUE(wave.guards_untouched());
-    EXPECT_EQ(wave.counters[STATUS_CODE], STATUS_OK);
+    test::StageBench bench = film_bench(3 * PIXELS);
+    const Wave wave{.pixel_count = PIXELS, .first_pass = 1, .pass_count = 3};
+    bench.run_film(wave);
+    expect_sums(bench, wave, 0, PIXELS);
+    EXPECT_TRUE(bench.guards_untouched());
+    EXPECT_EQ(bench.counters[STATUS_CODE], STATUS_OK);
 }
 
-TEST_F(FilmStage, WaveMayStartAndEndInsideThePicture) {
-    test::StageBench wave = bench(20);
-    wave.run_film(4, 0, 15);
-    expect_sums(wave, 4, 15);
+TEST_F(FilmStage, PixelsOutsideOfTheWaveStay) {
+    test::StageBench bench = film_bench(16);
+    const Wave wave{.first_pixel = 2, .pixel_count = 3, .first_pass = 4, .pass_count = 4};
+    bench.run_film(wave);
+    expect_sums(bench, wave, 0, PIXELS);
 }
 
-TEST_F(FilmStage, PixelsBeyondAShortWaveStay) {
-    test::StageBench wave = bench(16);
-    wave.run_film(5, 0, 2);  // pixels 5 and 0
-    expect_sums(wave, 5, 2);
+// Without a pass before, the sums are what the film's memory happened to hold.
+TEST_F(FilmStage, FirstPassReplacesWhatTheFilmHolds) {
+    test::StageBench bench = film_bench(16);
+    const Wave wave{.first_pixel = 1, .pixel_count = 4, .pass_count = 3};
+    bench.run_film(wave);
+    expect_sums(bench, wave, 1, 5);
+    for (const uint32_t pixel : {0u, 5u})
+        EXPECT_EQ(bench.film_layer(LAYER_DIRECT, pixel).y, 2) << "outside of the wave";
 }
 
 TEST_F(FilmStage, InfiniteContributionIsReported) {
-    test::StageBench wave = bench(8);
-    wave.layer(LAYER_DIRECT, 3).y = std::numeric_limits<float>::infinity();
-    wave.run_film(0, 0, 8);
-    EXPECT_EQ(wave.counters[STATUS_CODE], STATUS_NOT_FINITE);
-    EXPECT_EQ(wave.counters[STATUS_STAGE], STAGE_FILM);
-    EXPECT_EQ(wave.counters[STATUS_ITEM], 3U);
+    test::StageBench bench = film_bench(8);
+    bench.layer(LAYER_DIRECT, 3).y = std::numeric_limits<float>::infinity();
+    bench.run_film({.pixel_count = 4, .pass_count = 2});
+    EXPECT_EQ(bench.counters[STATUS_CODE], STATUS_NOT_FINITE);
+    EXPECT_EQ(bench.counters[STATUS_STAGE], STAGE_FILM);
+    EXPECT_EQ(bench.counters[STATUS_ITEM], 3U);
 }
 
 // Two samples of each pixel and then three, or all five at once: the same bits, and the variance of the beauty.
 TEST_F(FilmStage, DeviationsDontDependOnTheCut) {
     constexpr uint32_t SAMPLES = 5;
-    const auto sample = [](uint32_t layer, uint32_t slot) {
-        const auto x = static_cast<float>((slot * 7 + layer * 3) % 11);
+    const auto sample = [](uint32_t layer, uint32_t pixel, uint32_t pass) {
+        const auto x = static_cast<float>((pixel * 7 + pass * 9 + layer * 3) % 11);
         return f32x4{100 + x, 0.001f * x, 3, 0};
     };
     const auto rendered = [&](std::initializer_list<uint32_t> waves) {
         test::StageBench wave(device(), one_quad(), settings_of_picture(), SAMPLES * PIXELS,
                               {LAYER_VARIANCE});
         for (uint32_t layer = 0; layer < LAYER_COUNT; ++layer) {
-            for (uint32_t pixel = 0; pixel < PIXELS && wave.plane(layer) != NO_PLANE; ++pixel) {
-                wave.film_layer(layer, pixel) = {};
-                wave.film_excess(layer, pixel) = {};
-            }
+            for (uint32_t pixel = 0; pixel < PIXELS && wave.plane(layer) != NO_PLANE; ++pixel)
+                wave.film_layer(layer, pixel) = {1e6f, 1, 1, 1};  // of no meaning
         }
-        uint32_t pass = 0;
+        uint32_t first_pass = 0;
         for (const uint32_t passes : waves) {
             for (uint32_t slot = 0; slot < passes * PIXELS; ++slot) {
                 wave.layer(LAYER_VARIANCE, slot) = {};
                 for (uint32_t layer = 0; layer < BEAUTY_LAYERS; ++layer)
-                    wave.layer(layer, slot) = sample(layer, pass * PIXELS + slot);
+                    wave.layer(layer, slot) = sample(layer, slot / passes, first_pass + slot % passes);
             }
-            wave.run_film(0, pass, passes * PIXELS);
-            pass += passes;
+            wave.run_film({.pixel_count = PIXELS, .first_pass = first_pass, .pass_count = passes});
+            first_pass += passes;
         }
         return wave;
     };
@@ -152,7 +156,7 @@ TEST_F(FilmStage, DeviationsDontDependOnTheCut) {
         for (uint32_t s = 0; s < SAMPLES; ++s) {
             double beauty = 0;
             for (uint32_t layer = 0; layer < BEAUTY_LAYERS; ++layer)
-                beauty += static_cast<double>(sample(layer, s * PIXELS + pixel).x);
+                beauty += static_cast<double>(sample(layer, pixel, s).x);
             sum += beauty;
             squares += beauty * beauty;
         }
@@ -197,15 +201,14 @@ TEST_F(FilmStage, ManySamplesKeepTheirMeanAndVariance) {
     const Buffer path_buffer = Buffer::holding(device(), "paths", "test", paths);
     Buffer film(device(), "film", "test", PLANES * sizeof(FilmSum));
     Buffer counters(device(), "counters", "test", sizeof(DeviceStatus));
-    film.clear();
     counters.clear();
     ProgramLibrary library(device());
     const cl::Kernel kernel = library.kernel("film");
-    const uint32_t first_pixel = 0, count = SLOTS;
+    const uint32_t first_pixel = 0, pixel_count = 1, pass_count = SLOTS;
     for (uint32_t wave = 0; wave < WAVES; ++wave) {
         const uint32_t first_pass = wave * SLOTS;
         launch(device(), kernel, "film", 1, library.local_size(), frame, path_buffer, film, counters,
-               first_pixel, first_pass, count);
+               first_pixel, pixel_count, first_pass, pass_count);
     }
 
     Image image;
@@ -217,7 +220,7 @@ TEST_F(FilmStage, ManySamplesKeepTheirMeanAndVariance) {
     sums.sums = found;
     const std::vector<uint32_t> order{0};
     sums.pixel_order = order;
-    sums.samples = uint64_t{SLOTS} * WAVES;
+    sums.samples.passes = uint64_t{SLOTS} * WAVES;
     develop(sums, image);
     const std::vector<float>& emission = image.layers.at(1).pixels;
     EXPECT_NEAR(static_cast<double>(emission.at(0)), mean, 1e-6 * mean);

@@ -10,6 +10,7 @@
 #include <array>
 #include <bit>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace obscura {
@@ -28,7 +29,7 @@ inline Sampler sampler_of(global const Frame* frame, uint path) {
 }
 
 kernel void draw(global const Frame* frame, global uint4* out, uint dimension, uint j, uint n, uint2 steps,
-                 uint count) {
+                 uint permuted, uint count) {
     const uint first = (uint)get_global_id(0);
     if (first >= count || first % BATCH != 0u) return;
     SamplerBatch samplers;
@@ -39,10 +40,10 @@ kernel void draw(global const Frame* frame, global uint4* out, uint dimension, u
     }
     SampleSetBatch sets;
     CodeBatch codes;
-    make_sample_sets(frame, &samplers, dimension, n, steps, true, &sets);
+    make_sample_sets(frame, &samplers, dimension, n, steps, permuted != 0u, &sets);
     draw_codes(&sets, j, &codes);
     for (uint lane = 0u; lane < min(BATCH, count - first); ++lane) {
-        const uint2 alone = sample_codes(frame, sampler_of(frame, first + lane), dimension, j, n, steps, true);
+        const uint2 alone = sample_codes(frame, sampler_of(frame, first + lane), dimension, j, n, steps, permuted != 0u);
         out[first + lane] = (uint4)(codes.x[lane], codes.y[lane], alone.x, alone.y);
     }
 }
@@ -56,7 +57,7 @@ struct Points {
 
 class SampleBatch : public test::DeviceTest {
   protected:
-    Points draw(SamplerKind kind, uint32_t spp, uint32_t n, uint32_t j) {
+    Points draw(SamplerKind kind, uint32_t spp, uint32_t n, uint32_t j, bool permuted) {
         constexpr uint32_t COUNT = 108, DIMENSION = 5;  // the last batch isn't full
         Frame frame{};
         frame.sampling = {spp, 0, 0, static_cast<uint32_t>(kind)};
@@ -65,7 +66,7 @@ class SampleBatch : public test::DeviceTest {
         const Buffer out(device(), "out", "test", COUNT * sizeof(u32x4));
         launch(device(), library.kernel_from_text("sample batch", SOURCE, "draw"), "draw", COUNT,
                library.local_size(), Buffer::holding(device(), "frame", "test", std::span(&frame, 1)), out,
-               DIMENSION, j, n, lattice_steps(spp * n, spp), COUNT);
+               DIMENSION, j, n, lattice_steps(spp * n, spp), permuted ? 1u : 0u, COUNT);
         Points points;
         for (const u32x4& codes : out.contents<u32x4>()) {
             points.batch.push_back({codes.x, codes.y});
@@ -78,11 +79,12 @@ class SampleBatch : public test::DeviceTest {
 // 12 samples and 3 points aren't powers of two: some lanes have to permute again.
 TEST_F(SampleBatch, DrawsThePointsThatEachPathDrawsAlone) {
     for (const SamplerKind kind : {SamplerKind::lattice, SamplerKind::owen, SamplerKind::random}) {
-        for (const uint32_t n : {1u, 3u}) {
-            for (uint32_t j = 0; j < n; ++j) {
-                const Points points = draw(kind, 12, n, j);
-                EXPECT_EQ(points.batch, points.alone)
-                    << "sampler " << static_cast<int>(kind) << ", point " << j << " of " << n;
+        for (const auto& [n, j] :
+             {std::pair(1u, 0u), std::pair(3u, 0u), std::pair(3u, 1u), std::pair(3u, 2u)}) {
+            for (const bool permuted : {false, true}) {
+                const Points points = draw(kind, 12, n, j, permuted);
+                EXPECT_EQ(points.batch, points.alone) << "sampler " << static_cast<int>(kind) << ", point "
+                                                      << j << " of " << n << (permuted ? ", permuted" : "");
             }
         }
     }

@@ -90,7 +90,7 @@ TEST_P(BadSlot, IsReportedNotFollowed) {
     wave.counters[COUNT_SHADOWS] = 1;
     wave.counters[COUNT_POINTS] = 1;
     const auto before = wave.snapshot();
-    wave.run(row().stage, {.count = 1});
+    wave.run(row().stage, {{}, 1, 0});
     EXPECT_EQ(wave.counters[STATUS_CODE], STATUS_BAD_SLOT);
     EXPECT_EQ(wave.counters[STATUS_STAGE], static_cast<uint32_t>(row().stage));
     EXPECT_EQ(wave.counters[STATUS_ITEM], 0u);

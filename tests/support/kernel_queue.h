@@ -175,17 +175,13 @@ class StageBench {
     void set_slot(uint32_t item, uint32_t slot) { rays().at(RAY_ORIGIN, item).w = as_float(slot); }
 
     // The stages, launched over more items than there are: the counts have to guard them.
-    void run_camera(uint32_t first_pixel, uint32_t first_pass, uint32_t count) {
-        run(Stage::camera, {.first_pixel = first_pixel, .first_pass = first_pass, .count = count});
-    }
-    void run_trace(uint32_t count, uint32_t depth) { run(Stage::trace, {.count = count, .depth = depth}); }
-    void run_shade(uint32_t count, uint32_t depth) { run(Stage::shade, {.count = count, .depth = depth}); }
+    void run_camera(const Wave& wave) { run(Stage::camera, {wave, wave.sample_count(), 0}); }
+    void run_trace(uint32_t count, uint32_t depth) { run(Stage::trace, {{}, count, depth}); }
+    void run_shade(uint32_t count, uint32_t depth) { run(Stage::shade, {{}, count, depth}); }
     void run_shadow() { run(Stage::shadow, {}); }
-    void run_obscurance(uint32_t depth) { run(Stage::obscurance, {.depth = depth}); }
-    void run_gather(uint32_t count, uint32_t depth) { run(Stage::gather, {.count = count, .depth = depth}); }
-    void run_film(uint32_t first_pixel, uint32_t first_pass, uint32_t count) {
-        run(Stage::film, {.first_pixel = first_pixel, .first_pass = first_pass, .count = count});
-    }
+    void run_obscurance(uint32_t depth) { run(Stage::obscurance, {{}, 0, depth}); }
+    void run_gather(uint32_t count, uint32_t depth) { run(Stage::gather, {{}, count, depth}); }
+    void run_film(const Wave& wave) { run(Stage::film, {wave, 0, 0}); }
     void run(Stage stage, const Work& work) {
         buffers_->frame.upload(std::span(&frame, 1));
         buffers_->counters.upload(counters);

@@ -21,11 +21,14 @@ Image black_column(int32_t height) {
     return image;
 }
 
-// Three pixels, visited as 2, 0, 1, of which the first has a sample more than the others.
+// Three pixels, visited as 2, 0, 1, of which the first has two samples more than the others.
 TEST(Develop, PutsSumsWhereTheirPixelsAreAndCountsTheirSamples) {
-    const std::vector<FilmSum> sums{{{6, 9, 12, 3}, {}}, {{4, 2, 8, 2}, {}}, {{10, 0, 1, 0}, {}}};
+    const std::vector<FilmSum> sums{{{8, 12, 16, 4}, {}}, {{4, 2, 8, 2}, {}}, {{10, 0, 1, 0}, {}}};
     const std::vector<uint32_t> order{2, 0, 1};
-    FilmSums film{.planes = {}, .sums = sums, .pixel_order = order, .samples = 2, .pixels_ahead = 1};
+    FilmSums film{.planes = {},
+                  .sums = sums,
+                  .pixel_order = order,
+                  .samples = {.passes = 2, .pixels_ahead = 1, .passes_ahead = 2}};
     film.planes.fill(NO_PLANE);
     film.planes[LAYER_EMISSION] = 0;
     Image image = black_column(3);
@@ -39,7 +42,10 @@ TEST(Develop, PutsPartsOfBandsWhereTheyBelongAndLeavesTheRestBlack) {
     const std::vector<FilmSum> upper{{{1, 1, 1, 1}, {}}, {{2, 2, 2, 1}, {}}};
     const std::vector<FilmSum> lower{{{3, 3, 3, 1}, {}}};
     const std::vector<uint32_t> upper_order{3, 1, 0, 2}, lower_order{0};
-    FilmSums film{.planes = {}, .sums = upper, .pixel_order = std::span(upper_order).first(2), .samples = 1};
+    FilmSums film{.planes = {},
+                  .sums = upper,
+                  .pixel_order = std::span(upper_order).first(2),
+                  .samples = {.passes = 1}};
     film.planes.fill(NO_PLANE);
     film.planes[LAYER_EMISSION] = 0;
     Image image = black_column(5);

@@ -16,30 +16,54 @@
 namespace obscura {
 namespace {
 
-TEST(Plan, WavesCoverEverySampleOnceInOrder) {
+std::vector<Wave> waves_of(uint32_t capacity, uint32_t pixels, uint32_t first_pass, uint32_t end_pass) {
+    std::vector<Wave> waves;
+    const auto next = [&](const Wave& wave) { return wave_after(wave, capacity, pixels, end_pass); };
+    for (Wave wave = next({.first_pass = first_pass}); wave.sample_count() > 0; wave = next(wave))
+        waves.push_back(wave);
+    return waves;
+}
+
+// Each pixel's in ascending order. On the way no pixel gets more than twice the samples of another, or sixteen more.
+TEST(Plan, WavesCoverEverySampleOnce) {
     for (const uint32_t pixels : {1u, 7u, 64u, 1000u}) {
-        for (const uint32_t spp : {1u, 3u, 8u}) {
-            for (const uint32_t capacity : {64u, 65u, 999u, 100000u}) {
-                uint64_t next = 0;
-                for (uint64_t index = 0;; ++index) {
-                    const Wave wave = wave_at(index, capacity, pixels, spp);
-                    if (wave.count == 0) break;
-                    EXPECT_EQ(uint64_t{wave.first_pass} * pixels + wave.first_pixel, next);
-                    EXPECT_LE(wave.count, capacity);
-                    next += wave.count;
+        for (const uint32_t spp : {1u, 3u, 8u, 37u}) {
+            for (const uint32_t capacity : {1u, 3u, 64u, 999u, 100000u}) {
+                const uint32_t first_pass = spp / 3;
+                std::vector<uint32_t> passes(pixels, first_pass);
+                for (const Wave& wave : waves_of(capacity, pixels, first_pass, spp)) {
+                    EXPECT_LE(wave.sample_count(), capacity);
+                    for (uint32_t i = 0; i < wave.pixel_count; ++i) {
+                        uint32_t& pass = passes.at(wave.first_pixel + i);
+                        ASSERT_EQ(pass, wave.first_pass);
+                        pass += wave.pass_count;
+                    }
+                    const SampleCounts samples = samples_after(wave, pixels);
+                    for (uint32_t pixel = 0; pixel < pixels; ++pixel)
+                        ASSERT_EQ(samples.at(pixel), passes[pixel]);
+                    const auto [fewest, most] = std::ranges::minmax(passes);
+                    EXPECT_LE(most - fewest, std::clamp(fewest, 1u, 16u));
                 }
-                EXPECT_EQ(next, uint64_t{pixels} * spp);
+                EXPECT_EQ(passes, std::vector<uint32_t>(pixels, spp));
             }
         }
     }
 }
 
+TEST(Plan, PassesGoTogetherOnceThePictureHasSome) {
+    std::vector<uint32_t> passes;
+    for (const Wave& wave : waves_of(600, 1000, 0, 50))
+        if (wave.first_pixel == 0) passes.push_back(wave.pass_count);
+    EXPECT_EQ(passes, (std::vector<uint32_t>{1, 1, 2, 4, 8, 16, 16, 2}));
+    EXPECT_EQ(waves_of(600, 200, 0, 6).size(), 2u) << "a wave holds three passes over all pixels";
+}
+
 TEST(Plan, WavesOfHugeRendersDontOverflow) {
-    const uint32_t pixels = 65536u * 32768u;
-    const uint64_t last = (uint64_t{pixels} * 1000 - 1) / 4096;
-    const Wave wave = wave_at(last, 4096, pixels, 1000);
-    EXPECT_EQ(wave.first_pass, 999u);
-    EXPECT_EQ(wave_at(last + 1, 4096, pixels, 1000).count, 0u);
+    const uint32_t pixels = 65536u * 32767u;
+    const Wave last{.first_pixel = pixels - 5, .pixel_count = 5, .first_pass = 992, .pass_count = 8};
+    EXPECT_EQ(wave_after(last, 4096, pixels, 1000).sample_count(), 0u);
+    const Wave before{.first_pixel = pixels - 517, .pixel_count = 512, .first_pass = 992, .pass_count = 8};
+    EXPECT_EQ(wave_after(before, 4096, pixels, 1000).pixel_count, 5u);
 }
 
 TEST(Plan, CapacityFitsMemoryAndAllocationLimits) {
