@@ -119,6 +119,12 @@ void require_writable(const fs::path& path) {
     FileWriter(probe.path(), path).close();
 }
 
+void make_folder(const fs::path& path) {
+    std::error_code error;
+    fs::create_directories(path, error);
+    if (error) throw InputError("{}: the folder can't be made: {}", path.string(), error.message());
+}
+
 std::string read_text(const fs::path& path) {
     return read_whole<std::string>(path);
 }

@@ -23,6 +23,9 @@ void write_atomically(const std::filesystem::path& path,
 // Fails early, with InputError, if path can't be written later: called before a long render.
 void require_writable(const std::filesystem::path& path);
 
+// A folder and those above it, if they aren't there. Throws InputError with the system's reason.
+void make_folder(const std::filesystem::path& path);
+
 // The whole file. Throws InputError with the system's reason.
 std::string read_text(const std::filesystem::path& path);
 std::vector<std::byte> read_bytes(const std::filesystem::path& path);

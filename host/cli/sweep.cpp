@@ -127,7 +127,7 @@ class Sweep {
 
 bool Sweep::make_references() {
     const fs::path folder = own_.references.empty() ? folder_ : fs::path(own_.references);
-    fs::create_directories(folder);
+    make_folder(folder);
     SweepReferenceJob job{scene_, settings_, own_.budgets, IntegratorKind::obscurance, folder};
     std::unique_ptr<MutedWarnings> given_before;
     for (const SweepMethod& method : methods_) {
@@ -206,7 +206,7 @@ void Sweep::report(const SweepRecord& record, bool complete) const {
 }
 
 ExitCode Sweep::run() {
-    fs::create_directories(folder_ / "pictures");
+    make_folder(folder_ / "pictures");
     catch_interrupts();
     log_info("{}: {}, {}; device {}", scene_.name, counted(scene_.triangles.size(), "triangle"),
              counted(methods_.size(), "method"), device_.name());

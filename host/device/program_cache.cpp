@@ -84,7 +84,7 @@ std::optional<std::vector<unsigned char>> ProgramCache::load(const std::string& 
 void ProgramCache::store(const std::string& key, std::span<const unsigned char> program) {
     try {
         if (folder_.empty()) throw InputError("none of OBSCURA_CACHE_DIR, XDG_CACHE_HOME and HOME is set");
-        std::filesystem::create_directories(folder_);
+        make_folder(folder_);
         write_text(entry_path(key), entry_header(key, as_text(program)).append(as_text(program)));
         remove_unused();
     } catch (const std::exception& error) {  // no permission, disk full, ...: only speed is lost

@@ -128,6 +128,17 @@ TEST(File, FoldersAndEmptyNamesAreRefused) {
     EXPECT_INPUT_ERROR(write_text("/proc/a.txt", "x"), "/proc/a.txt: can't be written");
 }
 
+TEST(File, MakesAFolderWithThoseAboveItOrSaysWhyNot) {
+    const TemporaryFolder folder;
+    const std::string made = folder.file("a/b"), file = folder.file("file");
+    make_folder(made);
+    make_folder(made);
+    EXPECT_TRUE(fs::is_directory(made));
+    write_text(file, "text");
+    EXPECT_INPUT_ERROR(make_folder(file + "/b"), file + "/b: the folder can't be made: Not a directory");
+    EXPECT_INPUT_ERROR(make_folder(file), file);
+}
+
 TEST(File, RequireWritableTouchesNothing) {
     const TemporaryFolder folder;
     require_writable(folder.file("new"));
