@@ -143,7 +143,12 @@ Buffer::Mapping::Mapping(const Buffer& mapped, uint64_t bytes) : buffer(mapped) 
 }
 
 Buffer::Mapping::~Mapping() {
-    buffer.device_->queue().enqueueUnmapMemObject(buffer.handle_, memory);
+    if (memory != nullptr) buffer.device_->queue().enqueueUnmapMemObject(buffer.handle_, memory);
+}
+
+void Buffer::Mapping::close() {
+    check(buffer.device_->queue().enqueueUnmapMemObject(buffer.handle_, std::exchange(memory, nullptr)),
+          "clEnqueueUnmapMemObject", fmt::format("reading \"{}\"", buffer.name_), buffer.device_->name());
 }
 
 void Buffer::clear() {

@@ -70,8 +70,9 @@ class Buffer {
     template <typename T, typename Use>
     void read_in_place(size_t count, const Use& use) const {
         check_range(0, count * sizeof(T));
-        const Mapping mapping(*this, count * sizeof(T));
+        Mapping mapping(*this, count * sizeof(T));
         use(std::span(static_cast<const T*>(mapping.memory), count));
+        mapping.close();
     }
     // Sets every byte to zero, in queue order, without waiting.
     void clear();
@@ -85,7 +86,8 @@ class Buffer {
     // The first bytes of a buffer, to be read.
     struct Mapping {
         Mapping(const Buffer& buffer, uint64_t bytes);
-        ~Mapping();
+        ~Mapping();  // closes it, if an error hasn't let it be closed
+        void close();
         Mapping(const Mapping&) = delete;
         Mapping& operator=(const Mapping&) = delete;
 

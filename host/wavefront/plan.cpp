@@ -106,8 +106,10 @@ Wave wave_after(const Wave& wave, uint32_t capacity, uint32_t pixel_count, uint3
         next.pass_count =
             std::min({std::max(as_before, capacity / pixel_count), capacity, end_pass - next.first_pass});
     }
-    next.pixel_count =
-        next.pass_count == 0 ? 0 : std::min(capacity / next.pass_count, pixel_count - next.first_pixel);
+    if (next.pass_count == 0) return {};
+    const uint32_t most = capacity / next.pass_count;
+    const uint32_t wave_count = (pixel_count - 1) / most + 1;
+    next.pixel_count = std::min((pixel_count - 1) / wave_count + 1, pixel_count - next.first_pixel);
     return next;
 }
 

@@ -65,7 +65,8 @@ class LaneCount {
                        layer_lanes(rays.glossy, {LAYER_SPECULAR_DIRECT, LAYER_SPECULAR_AMBIENT}) +
                        layer_lanes(shape.light_lobes > 1 ? items : 0, {LAYER_SPECULAR_EMISSION});
             case Stage::film:
-                // Layers of the samples; sums of the pixels, read and written.
+                // Layers of the samples; sums of the pixels, read and written. The first pass only writes them, which
+                // isn't told apart.
                 return rays.camera * planes + 2 * items * planes * (sizeof(FilmSum) / sizeof(f32x4));
         }
         return 0;

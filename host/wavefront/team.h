@@ -22,8 +22,8 @@ class Team {
 
     void upload(const SceneArrays& arrays, const Bvh& bvh, const QueueShape& shape, const PieceSize& piece);
 
-    // Renders the pieces of the list, the ranges' sums into film and their visits, if there are any, into pixel_nodes. Leaves
-    // the rest when it is stopped; where a device fails, the others are stopped and its error is thrown.
+    // Renders the pieces of the list, into film, from which read_sums() has them, and their visits, if there are any, into
+    // pixel_nodes. Leaves the rest when it is stopped; where a device fails, the others are stopped and its error is thrown.
     void render(const Frame& frame, std::span<const uint32_t> pixel_order, WorkList& list,
                 std::vector<FilmRange>& film, PixelNodes& pixel_nodes);
 

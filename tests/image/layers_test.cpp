@@ -194,9 +194,11 @@ RenderResult render_until(const Scene& scene, const RenderSettings& settings, ui
 TEST_F(Layers, StoppedRenderIsAWholePicture) {
     const RenderSettings settings = room_settings();
     const Scene room = busy_room();
-    // Stops in the middle of the second of four passes: some pixels have two samples, the others one.
-    const RenderResult stopped = render_until(room, settings, 64 * 48 * 3 / 2, 0.3);
+    // Stops in the middle of the second of four passes: half of the pixels have two samples, the others one.
+    const RenderResult stopped = render_until(room, settings, 64 * 48 / 2, 0.3);
     EXPECT_FALSE(stopped.complete);
+    EXPECT_EQ(stopped.samples_per_pixel, 1u);
+    EXPECT_EQ(stopped.rays.camera, uint64_t{64 * 48 * 3 / 2});
     EXPECT_EQ(attribute_text(stopped.image.attributes.at("complete")), "no");
     const Image whole = render_room(settings);
     for (const Layer& layer : stopped.image.layers) {
@@ -228,7 +230,7 @@ TEST_F(Layers, StoppedRenderKeepsExactMeans) {
     EXPECT_EQ(stopped.samples_per_pixel, 2u);
     EXPECT_EQ(channel(stopped.image, "", 3), std::vector<double>(16 * 12, 1.0));
     EXPECT_EQ(channel(stopped.image, "emission", 2), std::vector<double>(16 * 12, 4.0));
-    EXPECT_EQ(stopped.rays.camera, uint64_t{16 * 12 * 2 + 100}) << "two more of fifty pixels";
+    EXPECT_EQ(stopped.rays.camera, uint64_t{16 * 12 * 2 + 96}) << "two more of a quarter of the pixels";
 }
 
 TEST_F(Layers, FinishedRenderIsComplete) {

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "support/busy_room.h"
@@ -120,19 +122,23 @@ TEST_F(SeveralDevices, WorkIsThatOfTheWholeDevice) {
     EXPECT_NEAR(of_pixels / of_rays, 1, 1e-5);
 }
 
-// The whole device's picture after so many passes: one pass is one wave.
-Image stopped_after(const RenderJob& job, Device& device, ProgramLibrary& library, uint32_t passes) {
+// What the whole device has rendered after so many waves.
+RenderResult stopped_after(const RenderJob& job, Device& device, ProgramLibrary& library, uint32_t waves) {
     uint32_t calls = 0;
-    return render_scene(device, library, job, [&](double, const RayCounts&) { return calls++ < passes; })
-        .image;
+    return render_scene(device, library, job, [&](double, const RayCounts&) { return calls++ < waves; });
 }
 
 TEST_F(SeveralDevices, StoppedPictureHasTheFirstSamplesOfEveryPixel) {
     const RenderSettings settings = room_settings();
+    // Waves of as many samples as there are pixels. Passes go together as in the pieces of several devices: the third
+    // with the fourth, and the last four.
     std::vector<Image> after;
-    for (uint32_t passes = 0; passes <= settings.spp; ++passes)
-        after.push_back(stopped_after(job(settings, {.wave_size = uint64_t{WIDTH} * HEIGHT}), device(),
-                                      shared_library(64), passes));
+    for (uint32_t waves = 0; waves <= settings.spp; ++waves) {
+        RenderResult result = stopped_after(job(settings, {.wave_size = uint64_t{WIDTH} * HEIGHT}), device(),
+                                            shared_library(64), waves);
+        EXPECT_EQ(result.samples_per_pixel, std::bit_floor(waves));
+        after.push_back(std::move(result.image));
+    }
     for (const double end : {0.1, 0.7}) {
         const RenderResult stopped =
             render_scene(parts_, job(settings, {.wave_size = 777}),

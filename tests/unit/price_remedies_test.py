@@ -43,6 +43,17 @@ class PriceRemedies(unittest.TestCase):
                            if file.read_bytes() != (ROOT / "kernels" / file.relative_to(without)).read_bytes()}
                 self.assertEqual({file for file, _, _ in remedy[1]}, changed)
 
+    def test_kernels_of_other_flags_have_caches_of_their_own(self):
+        flagged = [remedy for remedy in price_remedies.REMEDIES if len(remedy) > 3]
+        self.assertTrue(flagged)
+        for remedy in price_remedies.REMEDIES:
+            with self.subTest(remedy[0]), tempfile.TemporaryDirectory() as folder:
+                environment = price_remedies.without(remedy, folder)
+                self.assertEqual(f"{folder}/kernels", environment.pop("OBSCURA_KERNEL_DIR"))
+                self.assertEqual(remedy[3] if remedy in flagged else None, environment.pop("POCL_EXTRA_BUILD_FLAGS", None))
+                caches = {f"{folder}/cache", f"{folder}/pocl"} if remedy in flagged else set()
+                self.assertEqual(caches, set(environment.values()))
+
     def test_rows_tell_speeds_added_time_and_worth(self):
         stages = [*price_remedies.TRACING, "shade", "film"]
         with tempfile.TemporaryDirectory() as name:
