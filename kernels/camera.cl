@@ -2,7 +2,7 @@
 // Stage camera: starts the paths of a wave.
 //   Reads    the wave's range of pixels and passes
 //   Appends  nothing: sample i of the wave is path slot i and ray i
-//   Writes   ray i, path slot i (throughput 1, layers 0)
+//   Writes   ray i, of path slot i throughput 1 and the sample; its layers start at depth 0
 // A wave is some passes over a range of pixels; a pixel's samples are neighbours in it. The pixels are visited tile by
 // tile (pixel_order), so that neighbours in a queue are neighbours in the picture. Pixel filters are sampled, not
 // splatted (Ernst, Stamminger, Greiner 2006), which leaves every pixel one owner. Samples are made in batches (lib/batch.clh).
@@ -98,12 +98,6 @@ inline void start_paths(global const Frame* frame, const CameraBatch* batch, con
         paths[path_index(frame, PATH_THROUGHPUT, slot)] = (float4)(1.0f, 1.0f, 1.0f, 0.0f);
         paths[path_index(frame, PATH_SAMPLE, slot)] = as_float4(
             (uint4)(batch->samplers.seed[lane], batch->samplers.sample[lane], batch->pixel[lane], 0u));
-    }
-    const uint planes = layer_plane_count(frame);
-    for (uint plane = 0u; plane < planes; ++plane) {
-        global float4* layer = paths + path_index(frame, PATH_LAYERS + plane, first_slot);
-        for (uint lane = 0u; lane < batch->count; ++lane)
-            layer[lane] = (float4)(0.0f);
     }
 }
 

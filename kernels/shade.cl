@@ -19,16 +19,32 @@ inline void write_first_hit(global const Frame* frame, const Vertex* v, global c
                             float4 hit, global float4* paths) {
     const Surface* s = &v->surface;
     const float depth = dot(s->position - frame->camera_origin.xyz, frame->camera_forward.xyz);
-    add_to_layer(
+    start_layer(
         frame, paths, LAYER_POSITION, v->slot,
         frame->world_origin.w * (float4)(s->position, depth) + (float4)(frame->world_origin.xyz, 0.0f));
-    add_to_layer(frame, paths, LAYER_NORMAL, v->slot, (float4)(s->n_geo, 0.0f));
-    add_to_layer(frame, paths, LAYER_SHADING, v->slot, (float4)(s->n_shade, 0.0f));
+    start_layer(frame, paths, LAYER_NORMAL, v->slot, (float4)(s->n_geo, 0.0f));
+    start_layer(frame, paths, LAYER_SHADING, v->slot, (float4)(s->n_shade, 0.0f));
     if (has_layer(frame, LAYER_UV)) {
-        add_to_layer(frame, paths, LAYER_UV, v->slot,
-                     (float4)(texture_coordinates(triangle, hit.y, hit.z), 0.0f, 0.0f));
+        start_layer(frame, paths, LAYER_UV, v->slot,
+                    (float4)(texture_coordinates(triangle, hit.y, hit.z), 0.0f, 0.0f));
     }
-    add_to_layer(frame, paths, LAYER_ALBEDO, v->slot, (float4)(v->diffuse + v->specular, 0.0f));
+    start_layer(frame, paths, LAYER_ALBEDO, v->slot, (float4)(v->diffuse + v->specular, 0.0f));
+}
+
+// The layers of the first hit where there is none.
+inline void clear_first_hit(global const Frame* frame, global float4* paths, uint slot) {
+    for (uint layer = LAYER_POSITION; layer <= LAYER_UV; ++layer)
+        start_layer(frame, paths, layer, slot, (float4)(0.0f));
+}
+
+// radiance: what a path brings back from where its ray of this depth ends; covered: 1 where that is a surface.
+inline void add_emission(global const Frame* frame, global float4* paths, uint depth, uint slot,
+                         float3 radiance, float covered) {
+    if (depth == 0u) {
+        start_layer(frame, paths, LAYER_EMISSION, slot, (float4)(radiance, covered));
+    } else {
+        add_to_layer(frame, paths, LAYER_SPECULAR_EMISSION, slot, (float4)(radiance, 0.0f));
+    }
 }
 
 // What emission adds at a vertex, and the first hit's layers. v->pane_way: the way from where the ray was scattered.
@@ -42,8 +58,7 @@ inline void write_emission(global const Frame* frame, const SceneData* scene, co
                             emission_weight(frame, scene->area_lights, light_index, v->pdf_sr, v->pane_way,
                                             origin, direction);
     }
-    add_to_layer(frame, paths, emission_layer(v->depth), v->slot,
-                 (float4)(v->throughput * emitted, v->depth == 0u ? 1.0f : 0.0f));
+    add_emission(frame, paths, v->depth, v->slot, v->throughput * emitted, 1.0f);
 }
 
 // Vertex of ray i; false if there is nothing to be lit.
@@ -63,10 +78,9 @@ INLINED bool meet_surface(global const Frame* frame, const SceneData* scene, glo
     const uint primitive = as_uint(hit.w);
     if (primitive == NO_PRIMITIVE) {
         clear_light_lanes(frame, paths, slot);
-        if (NEED_BACKGROUND) {
-            add_to_layer(frame, paths, emission_layer(depth), slot,
-                         (float4)(throughput.xyz * frame->background.xyz, 0.0f));
-        }
+        const float3 sky = NEED_BACKGROUND ? frame->background.xyz : (float3)(0.0f);
+        add_emission(frame, paths, depth, slot, throughput.xyz * sky, 0.0f);
+        if (depth == 0u) clear_first_hit(frame, paths, slot);
         return false;
     }
 
@@ -79,7 +93,7 @@ INLINED bool meet_surface(global const Frame* frame, const SceneData* scene, glo
     v->depth = depth;
     v->sampler.seed = sample.x;
     v->sampler.sample = sample.y;
-    write_emission(frame, scene, v, triangle->ids.z, origin.xyz - direction.w * direction.xyz, direction.xyz,
+    write_emission(frame, scene, v, triangle->ids.y, origin.xyz - direction.w * direction.xyz, direction.xyz,
                    paths);
     if (depth == 0u) write_first_hit(frame, v, triangle, hit, paths);
     if ((v->flags & MATERIAL_UNLIT) == 0u) return true;

@@ -31,11 +31,13 @@ SceneTriangle make_triangle(const Scene& scene, uint32_t index) {
     const Vertex& a = scene.corner(index, 0);
     const Vertex& b = scene.corner(index, 1);
     const Vertex& c = scene.corner(index, 2);
+    const V3f normal(geometric_normal(scene, index));
     const uint32_t flags = is_smooth(scene, index) ? TRIANGLE_SMOOTH : 0u;
-    const Triangle& triangle = scene.triangles[index];
-    return {{lane(a.position, a.uv.x), lane(b.position, a.uv.y), lane(c.position, b.uv.x)},
-            {lane(a.normal, b.uv.y), lane(b.normal, c.uv.x), lane(c.normal, c.uv.y)},
-            {triangle.material, triangle.object, NO_LIGHT, flags}};
+    const auto longest = static_cast<float>(longest_edge(scene, index));
+    return {{lane(a.position, normal.x), lane(b.position, normal.y), lane(c.position, normal.z)},
+            {scene.triangles[index].material, NO_LIGHT, flags, std::bit_cast<uint32_t>(longest)},
+            {lane(a.normal, a.uv.x), lane(b.normal, b.uv.x), lane(c.normal, c.uv.x)},
+            {a.uv.y, b.uv.y, c.uv.y, 0}};
 }
 
 uint32_t wrap_code(Wrap wrap) {
@@ -102,7 +104,7 @@ std::vector<AreaLight> make_area_lights(const Scene& scene, std::vector<SceneTri
         if (!is_emissive(material)) continue;
         const double power =
             mean_channel(V3d(material.emission)) * triangle_area(scene, i) * (material.double_sided ? 2 : 1);
-        triangles[i].ids.z = static_cast<uint32_t>(emitters.size());
+        triangles[i].ids.y = static_cast<uint32_t>(emitters.size());
         powers.push_back(power);
         emitters.push_back(i);
     }

@@ -20,8 +20,7 @@ TriangleData make_triangle(const Scene& scene, uint32_t index) {
         for (int axis = 0; axis < 3; ++axis)
             largest = std::max(largest, std::abs(triangle.corner[k][axis]));
     }
-    // Zeros become positive, as in the kernels: a basis about the normal depends on their sign.
-    triangle.n_geo = geometric_normal(scene, index) + V3d(0);
+    triangle.n_geo = geometric_normal(scene, index);
     triangle.area = triangle_area(scene, index);
     triangle.lift = RELATIVE_LIFT * largest;  // no edge is longer than a few of the largest coordinate
     triangle.smooth = is_smooth(scene, index);

@@ -32,11 +32,21 @@ std::array<double, 256> make_srgb_table() {
 }  // namespace
 
 V3d geometric_normal(const Scene& scene, uint32_t triangle) {
-    return edge_cross(scene, triangle).normalized();
+    return edge_cross(scene, triangle).normalized() + V3d(0);  // -0 + 0 is 0
 }
 
 double triangle_area(const Scene& scene, uint32_t triangle) {
     return 0.5 * edge_cross(scene, triangle).length();
+}
+
+double longest_edge(const Scene& scene, uint32_t triangle) {
+    double longest2 = 0;
+    for (int i = 0; i < 3; ++i) {
+        const V3d from(scene.corner(triangle, i).position);
+        const V3d to(scene.corner(triangle, (i + 1) % 3).position);
+        longest2 = std::max(longest2, (to - from).length2());
+    }
+    return std::sqrt(longest2);
 }
 
 double diagonal(const Scene& scene) {

@@ -111,15 +111,17 @@ struct Scene {
 };
 
 // Geometry of one triangle in double, from its float corners.
-// Unit normal of the front side; undefined for zero area, which no scene holds.
+// Unit normal of the front side; undefined for zero area, which no scene holds. Its zeros are positive: a basis about it
+// depends on their sign.
 V3d geometric_normal(const Scene& scene, uint32_t triangle);
 double triangle_area(const Scene& scene, uint32_t triangle);
+double longest_edge(const Scene& scene, uint32_t triangle);
 
 // Of the bounds, in metres; 0 when they are empty.
 double diagonal(const Scene& scene);
 
-// Largest component of the cross product of two edges, in the arithmetic with which kernels find the normal
-// (kernels/lib/surface.clh). They need a normal float: less is no area.
+// Largest component of the cross product of two edges, from exact products in float, as kernels test triangles
+// (kernels/lib/intersect.clh). They need a normal float: less is no area.
 float edge_product(const V3f& a, const V3f& b, const V3f& c);
 
 // Whether the triangle is shaded with its vertex normals: all three are there, and one differs from the

@@ -45,23 +45,36 @@ void check_picture_memory(const PixelRect& rect, const std::vector<std::string>&
         bytes_text(physical_memory_bytes()));
 }
 
+// Rows of the picture that the film holds at once.
+struct Band {
+    PixelRect rect;
+    std::vector<uint32_t> pixel_order;
+};
+
+std::vector<Band> plan_bands(const PixelRect& rect, uint32_t layer_planes, uint64_t max_film_bytes) {
+    std::vector<Band> bands;
+    for (const PixelRect& band : film_bands(rect, layer_planes, max_film_bytes))
+        bands.push_back({band, tiled_pixel_order(band.width(), band.height())});
+    return bands;
+}
+
 // Renders a band of rect into the image. Once the render is stopped, the remaining bands stay black.
-void render_band(Team& team, const FrameInput& input, const PixelRect& band, const PixelRect& rect,
+void render_band(Team& team, const FrameInput& input, const Band& band, const PixelRect& rect,
                  const PieceSize& piece, TraceRecord* trace, RenderResult& result) {
-    const auto pixels = static_cast<uint32_t>(band.pixel_count());
+    const std::span<const uint32_t> pixel_order = band.pixel_order;
+    const auto pixels = static_cast<uint32_t>(pixel_order.size());
     const uint32_t spp = input.settings.spp;
-    const size_t first_pixel = uint64_t{band.y0 - rect.y0} * rect.width();
-    const std::vector<uint32_t> pixel_order = tiled_pixel_order(band.width(), band.height());
+    const size_t first_pixel = uint64_t{band.rect.y0 - rect.y0} * rect.width();
     PixelNodes pixel_nodes(result.nodes_per_sample.empty() ? 0 : pixels);
     WorkList list(pixels, spp, piece);
     std::vector<FilmRange> film(list.range_count());
-    if (result.complete) team.render(make_frame(input, band, 0), pixel_order, list, film, pixel_nodes);
+    if (result.complete) team.render(make_frame(input, band.rect, 0), pixel_order, list, film, pixel_nodes);
 
     const TraceStep step(trace, TraceCategory::host, "develop");
     size_t place = 0;
     for (const FilmRange& range : film) {
         const size_t count = std::min<size_t>(piece.pixel_count, pixels - place);
-        const auto order = std::span(pixel_order).subspan(place, count);
+        const auto order = pixel_order.subspan(place, count);
         place += count;
         result.samples_per_pixel =
             std::min(result.samples_per_pixel, static_cast<uint32_t>(range.samples.passes));
@@ -162,7 +175,7 @@ RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob
     result.settings = settings;
     result.needs = setup.needs;
 
-    // The builder works on one core, everything up to the upload on another.
+    // The builder works on one core, everything up to the upload on another, also what only the end of the render needs.
     const std::shared_future<Bvh> building = job.bvh.valid() ? job.bvh : start_building(job, trace);
     result.d_max = resolve_max_distance(settings.d_max, job.scene);
     result.radiometry = compute_radiometry(job.scene);
@@ -172,9 +185,12 @@ RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob
     result.seconds.compile = compile_watch.seconds();
     const SceneArrays arrays = make_scene_arrays(job.scene, settings.filter);
     const QueueShape shape = queue_shape(result.needs, settings, plane_count(planes));
-    const std::vector<PixelRect> bands = film_bands(rect, shape.layer_planes, smallest_allocation(devices));
-    const PieceSize piece = piece_size(static_cast<uint32_t>(bands.front().pixel_count()), settings.spp,
+    const std::vector<Band> bands = plan_bands(rect, shape.layer_planes, smallest_allocation(devices));
+    const PieceSize piece = piece_size(static_cast<uint32_t>(bands.front().pixel_order.size()), settings.spp,
                                        job.wave_size, devices.size());
+    place_image(result.image, settings, rect);
+    add_layers(job.layers, result.image);
+    if (job.count_visits) result.nodes_per_sample.resize(rect.pixel_count());
     const Bvh& bvh = building.get();
     result.seconds.build = bvh.build_seconds;
 
@@ -182,9 +198,6 @@ RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob
     team.upload(arrays, bvh, shape, piece);
     result.seconds.upload = upload_watch.seconds();
 
-    place_image(result.image, settings, rect);
-    add_layers(job.layers, result.image);
-    if (job.count_visits) result.nodes_per_sample.resize(rect.pixel_count());
     const Stopwatch render_watch;
     const FrameInput input{job.scene,
                            settings,
@@ -196,7 +209,7 @@ RenderResult render_scene(std::span<const RenderDevice> devices, const RenderJob
                            result.d_max};
     result.samples_per_pixel = settings.spp;
     result.complete = after_wave(0, {});
-    for (const PixelRect& band : bands)
+    for (const Band& band : bands)
         render_band(team, input, band, rect, piece, trace, result);
     result.seconds.render = render_watch.seconds();
     collect_work(team, planes, result);

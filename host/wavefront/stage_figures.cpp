@@ -39,17 +39,17 @@ class LaneCount {
         const uint64_t light_lanes = uint64_t{shape.light_samples} * shape.light_lobes;
         switch (stage) {
             case Stage::camera:
-                // The ray without its hit, throughput, sample, layers.
-                return items * (RAY_LANES - 1 + 2 + planes);
+                // The ray without its hit, throughput, sample.
+                return items * (RAY_LANES - 1 + 2);
             case Stage::trace:
                 return items * RAY_LANES;
             case Stage::shade:
                 // Ray, throughput, sample; ambient, light contributions, layers; what is appended, and the
                 // throughput of paths that go on.
                 return items * (RAY_LANES + 2) + items * (1 + light_lanes) +
-                       layer_lanes(rays.camera, {LAYER_EMISSION, LAYER_POSITION, LAYER_NORMAL, LAYER_SHADING,
-                                                 LAYER_UV, LAYER_ALBEDO}) +
-                       layer_lanes(rays.glossy, {LAYER_SPECULAR_EMISSION}) + rays.shadow * SHADOW_LANES +
+                       started(rays.camera, {LAYER_EMISSION, LAYER_POSITION, LAYER_NORMAL, LAYER_SHADING,
+                                             LAYER_UV, LAYER_ALBEDO}) +
+                       added_to(rays.glossy, {LAYER_SPECULAR_EMISSION}) + rays.shadow * SHADOW_LANES +
                        points() * POINT_LANES + rays.glossy * (RAY_LANES + 1);
             case Stage::shadow:
                 return items * (SHADOW_LANES + 1);
@@ -60,10 +60,12 @@ class LaneCount {
                 // Slot, ambient, light contributions; visibility, results; layers, and for obscurance the flag in
                 // the lane of the sample.
                 return items * (2 + light_lanes) + rays.shadow + rays.obscurance +
-                       layer_lanes(rays.camera, {LAYER_DIRECT, LAYER_AMBIENT, LAYER_OBSCURANCE}) +
-                       layer_lanes(points(), {LAYER_OBSCURANCE}) +
-                       layer_lanes(rays.glossy, {LAYER_SPECULAR_DIRECT, LAYER_SPECULAR_AMBIENT}) +
-                       layer_lanes(shape.light_lobes > 1 ? items : 0, {LAYER_SPECULAR_EMISSION});
+                       started(rays.camera,
+                               {LAYER_DIRECT, LAYER_AMBIENT, LAYER_SPECULAR_EMISSION, LAYER_SPECULAR_DIRECT,
+                                LAYER_SPECULAR_AMBIENT, LAYER_OBSCURANCE}) +
+                       added_to(points(), {LAYER_OBSCURANCE}) +
+                       added_to(rays.glossy, {LAYER_SPECULAR_DIRECT, LAYER_SPECULAR_AMBIENT}) +
+                       added_to(shape.light_lobes > 1 ? rays.glossy : 0, {LAYER_SPECULAR_EMISSION});
             case Stage::film:
                 // Layers of the samples; sums of the pixels, read and written. The first pass only writes them, which
                 // isn't told apart.
@@ -77,10 +79,14 @@ class LaneCount {
         const uint32_t k_count = result_.shape.obscurance_rays;
         return k_count > 0 ? result_.rays.obscurance / k_count : 0;
     }
-    // Those of the layers that are kept, read and written for each item.
-    uint64_t layer_lanes(uint64_t items, std::initializer_list<uint32_t> layers) const {
+    // Those of the layers that are kept, written for each item.
+    uint64_t started(uint64_t items, std::initializer_list<uint32_t> layers) const {
         const auto is_kept = [&](uint32_t layer) { return result_.planes[layer] != NO_PLANE; };
-        return 2 * items * static_cast<uint64_t>(std::ranges::count_if(layers, is_kept));
+        return items * static_cast<uint64_t>(std::ranges::count_if(layers, is_kept));
+    }
+    // The same, read and written.
+    uint64_t added_to(uint64_t items, std::initializer_list<uint32_t> layers) const {
+        return 2 * started(items, layers);
     }
 
     const DeviceWork& result_;

@@ -92,7 +92,7 @@ constexpr std::array<StageInfo, STAGE_COUNT> STAGES{{
 
     {Stage::gather, "gather", each_depth, {"gather", "gather"},
      "glossy area_lights point_lights spot_lights directional_lights ambient obscurance",
-     [](const Needs& needs) { return needs.direct() || needs.ambient; }, each, nullptr, nothing,
+     always, each, nullptr, nothing,
      {frame, rays, visibility, results, paths, count, depth}},
 
     {Stage::film, "film", wave_end, {"film", "film"}, "", always, each_pixel, nullptr, nothing,

@@ -45,11 +45,14 @@
 namespace obscura {
 #endif
 
-// 112 bytes.
+// 128 bytes: two cache lines, of which only smooth and textured triangles need the second.
 typedef struct SceneTriangle {
-    f32x4 corner[3];  // xyz: world position, m; w: uv0.x, uv0.y, uv1.x
-    f32x4 normal[3];  // xyz: unit vertex normal (used when TRIANGLE_SMOOTH); w: uv1.y, uv2.x, uv2.y
-    u32x4 ids;        // material, object, index into the area lights or NO_LIGHT, TRIANGLE_* flags
+    f32x4 corner[3];  // xyz: world position, m; w: x, y, z of the unit normal that the winding gives
+    u32x4
+        ids;  // material, index into the area lights or NO_LIGHT, TRIANGLE_* flags, longest edge in m (float bits)
+    f32x4 normal
+        [3];  // xyz: unit vertex normal (used when TRIANGLE_SMOOTH); w: u of the corner's texture coordinates
+    f32x4 v;  // xyz: v of the corners' texture coordinates; w: unused
 } SceneTriangle;
 
 // 112 bytes; the model is documented in host/scene/material.h.
@@ -81,7 +84,7 @@ typedef struct PointLight {
 } PointLight;
 
 #ifdef __cplusplus
-static_assert(sizeof(SceneTriangle) == 112 && sizeof(SceneMaterial) == 112, "device layout");
+static_assert(sizeof(SceneTriangle) == 128 && sizeof(SceneMaterial) == 112, "device layout");
 static_assert(sizeof(AreaLight) == 48 && sizeof(PointLight) == 64, "device layout");
 }  // namespace obscura
 #endif

@@ -79,7 +79,7 @@ TEST_F(CameraStage, FillsAQueueExactlyWithRaysThroughTheirPixels) {
     EXPECT_TRUE(wave.guards_untouched());
 }
 
-TEST_F(CameraStage, StartsPathsWithEmptyLayers) {
+TEST_F(CameraStage, StartsPathsAndLeavesTheirLayersAlone) {
     test::StageBench wave = bench(SAMPLES);
     wave.run_camera(ALL_SAMPLES);
     std::set<uint32_t> seeds, samples;
@@ -92,7 +92,7 @@ TEST_F(CameraStage, StartsPathsWithEmptyLayers) {
         if (slot / SPP == 5) samples.insert(sample[1]);
         EXPECT_TRUE(wave.paths().untouched(PATH_AMBIENT, slot)) << "shade writes it";
         for (uint32_t layer = 0; layer < BEAUTY_LAYERS; ++layer)
-            EXPECT_EQ(test::bits(wave.layer(layer, slot)), test::bits(f32x4{})) << "layer " << layer;
+            EXPECT_TRUE(wave.paths().untouched(PATH_LAYERS + layer, slot)) << "layer " << layer;
     }
     EXPECT_EQ(seeds.size(), PIXELS) << "one seed per pixel";
     EXPECT_EQ(samples, (std::set<uint32_t>{0, 1, 2, 3})) << "all samples of a pixel";

@@ -58,6 +58,25 @@ TEST_F(GatherStage, SumsLightSamplesThatAreSeen) {
     EXPECT_TRUE(wave.guards_untouched());
 }
 
+// Nothing clears a slot between two waves.
+TEST_F(GatherStage, FirstDepthStartsTheLayersWhateverTheyHeld) {
+    constexpr std::array STARTED{LAYER_DIRECT,          LAYER_AMBIENT,          LAYER_SPECULAR_EMISSION,
+                                 LAYER_SPECULAR_DIRECT, LAYER_SPECULAR_AMBIENT, LAYER_OBSCURANCE};
+    test::StageBench clean = bench(1), used = bench(1);
+    clean.set_slot(0, 0);
+    used.set_slot(0, 0);
+    for (const int started : STARTED)
+        used.layer(static_cast<uint32_t>(started), 0) = {7, 8, 9, 10};
+    clean.run_gather(1, 0);
+    used.run_gather(1, 0);
+    EXPECT_EQ(layer(used, LAYER_DIRECT, 0), V3f(4, 8, 6));
+    for (const int started : STARTED) {
+        const auto number = static_cast<uint32_t>(started);
+        EXPECT_EQ(test::bits(used.layer(number, 0)), test::bits(clean.layer(number, 0)))
+            << "layer " << started;
+    }
+}
+
 TEST_F(GatherStage, DeeperLightGoesToTheSpecularLayers) {
     test::StageBench wave = bench(1);
     wave.set_slot(0, 0);

@@ -47,8 +47,9 @@ const std::vector<Question> QUESTIONS = {
 
     SIZE(SceneTriangle),
     OFFSET(SceneTriangle, corner),
-    OFFSET(SceneTriangle, normal),
     OFFSET(SceneTriangle, ids),
+    OFFSET(SceneTriangle, normal),
+    OFFSET(SceneTriangle, v),
 
     SIZE(SceneMaterial),
     OFFSET(SceneMaterial, base),

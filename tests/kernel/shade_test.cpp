@@ -92,6 +92,17 @@ TEST_F(ShadeStage, MissAddsTheSkyAndEndsThePath) {
     EXPECT_TRUE(wave.next_rays().untouched(RAY_ORIGIN, 0));
 }
 
+TEST_F(ShadeStage, MissAtTheFirstDepthLeavesNothingOfAnotherWave) {
+    test::StageBench wave = bench({NOTHING});
+    for (const int old : {LAYER_EMISSION, LAYER_POSITION, LAYER_NORMAL, LAYER_SHADING, LAYER_ALBEDO})
+        wave.layer(static_cast<uint32_t>(old), 0) = {7, 8, 9, 1};
+    wave.run_shade(1, 0);
+    EXPECT_EQ(test::bits(wave.layer(LAYER_EMISSION, 0)), test::bits(f32x4{0.1f, 0.2f, 0.3f, 0}));
+    for (const int old : {LAYER_POSITION, LAYER_NORMAL, LAYER_SHADING, LAYER_ALBEDO})
+        EXPECT_EQ(test::bits(wave.layer(static_cast<uint32_t>(old), 0)), test::bits(f32x4{}))
+            << "layer " << old;
+}
+
 TEST_F(ShadeStage, LampIsSeenFromItsFront) {
     test::StageBench wave = bench({LIT});
     wave.run_shade(1, 0);

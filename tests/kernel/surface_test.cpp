@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "device/scene_buffers.h"
 #include "reference/meshes.h"
 #include "reference/ray_capture.h"
 #include "support/device.h"
@@ -49,18 +50,14 @@ kernel void probe(global const SceneTriangle* triangle, global const float4* hit
 
     std::vector<Point> points(const Corners& corners, const std::vector<TraceRay>& rays,
                               const std::vector<TraceHit>& hits) {
-        SceneTriangle triangle{};
-        triangle.corner[0] = {corners.a.x, corners.a.y, corners.a.z, 0};
-        triangle.corner[1] = {corners.b.x, corners.b.y, corners.b.z, 0};
-        triangle.corner[2] = {corners.c.x, corners.c.y, corners.c.z, 0};
         std::vector<f32x4> lanes;
         for (size_t i = 0; i < rays.size(); ++i) {
             const V3f& direction = rays[i].direction;
             lanes.push_back({hits[i].t, hits[i].u, hits[i].v, 0});
             lanes.push_back({direction.x, direction.y, direction.z, 0});
         }
-        const Buffer triangle_buffer =
-            Buffer::holding(device_, "triangle", "test", std::vector<SceneTriangle>{triangle});
+        const SceneArrays arrays = make_scene_arrays(lone_triangle(corners), PixelFilter::box);
+        const Buffer triangle_buffer = Buffer::holding(device_, "triangle", "test", arrays.triangles);
         const Buffer in = Buffer::holding(device_, "hits", "test", lanes);
         const Buffer out(device_, "surfaces", "test", lanes.size() * sizeof(f32x4));
         launch(device_, kernel_, "surface probe", rays.size(), library_.local_size(), triangle_buffer, in,
@@ -209,10 +206,11 @@ kernel void probe(global const SceneTriangle* triangle, global float4* out, uint
     SceneTriangle triangle{};
     triangle.corner[1].x = 1;
     triangle.corner[2].y = 1;
+    triangle.corner[2].w = 1;
     triangle.normal[0] = {1, 0, 0, 0};
     triangle.normal[1] = {-1, 0, 0, 0};
     triangle.normal[2] = {0, 0, 1, 0};
-    triangle.ids = {0, 0, NO_LIGHT, TRIANGLE_SMOOTH};
+    triangle.ids = {0, NO_LIGHT, TRIANGLE_SMOOTH, 0};
     const Buffer in = Buffer::holding(device(), "triangle", "test", std::vector<SceneTriangle>{triangle});
     const Buffer out(device(), "normal", "test", sizeof(f32x4));
     launch(device(), kernel, "normal probe", 1, library.local_size(), in, out, 1u);

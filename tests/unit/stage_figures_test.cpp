@@ -100,17 +100,17 @@ TEST(StageFigures, RowsAreThoseOfTheProfileInTheOrderOfTheStages) {
 }
 
 TEST(StageFigures, BytesAreThoseOfTheLanes) {
-    // Origin, direction, throughput, sample and four layers.
-    EXPECT_EQ(figures_of("camera").bytes, 100u * 8 * 16);
+    // Origin, direction, throughput, sample.
+    EXPECT_EQ(figures_of("camera").bytes, 100u * 4 * 16);
     EXPECT_EQ(figures_of("trace_camera").bytes, 100u * 3 * 16);
-    // The ray with its hit, throughput, sample; ambient, a light contribution; emission read and written; shadow rays of
-    // two lanes, 80 points of three.
-    EXPECT_EQ(figures_of("shade").bytes, (100u * (5 + 2 + 2) + 60 * 2 + 80 * 3) * 16);
+    // The ray with its hit, throughput, sample; ambient, a light contribution; emission; shadow rays of two lanes, 80
+    // points of three.
+    EXPECT_EQ(figures_of("shade").bytes, (100u * (5 + 2 + 1) + 60 * 2 + 80 * 3) * 16);
     EXPECT_EQ(figures_of("shadow").bytes, 60u * 3 * 16);
     EXPECT_EQ(figures_of("obscurance").bytes, (80u * 4 + 160) * 16);
-    // Slot, ambient, a light contribution; visibility, results; three layers, and the sample of each point, read and
-    // written.
-    EXPECT_EQ(figures_of("gather").bytes, (100u * 3 + 60 + 160 + 100 * 6 + 80 * 2) * 16);
+    // Slot, ambient, a light contribution; visibility, results; three layers, written; the sample of each point, read
+    // and written.
+    EXPECT_EQ(figures_of("gather").bytes, (100u * 3 + 60 + 160 + 100 * 3 + 80 * 2) * 16);
     // Each sample's layers; each pixel's sums with what rounding left over, read and written.
     EXPECT_EQ(figures_of("film").bytes, (100u * 4 + 25 * 4 * 4) * 16);
 }

@@ -15,8 +15,6 @@ namespace {
 TEST(NeededStages, AreThoseWithWork) {
     using enum Stage;
     Needs needs;
-    EXPECT_EQ(needed_stages(needs), (std::vector{camera, trace, shade, film}));
-    needs.ambient = true;  // constant
     EXPECT_EQ(needed_stages(needs), (std::vector{camera, trace, shade, gather, film}));
     needs.obscurance = true;
     EXPECT_EQ(needed_stages(needs), (std::vector{camera, trace, shade, obscurance, gather, film}));
