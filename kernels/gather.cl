@@ -7,7 +7,7 @@
 #include "lib/layers.clh"
 #include "lib/math.clh"
 
-// Of the light that a path's last vertex reflects.
+// What the vertex of this depth reflects.
 typedef struct Reflected {
     float3 diffuse, glossy;  // from the lights
     float3 ambient;

@@ -140,16 +140,15 @@ void develop(const FilmSums& film, Image& image) {
     // value_at: of a place in the order of visits.
     const auto fill = [&](Layer& layer, size_t first, auto value_at) {
         const size_t channels = layer.channels.size();
-        tbb::parallel_for(tbb::blocked_range<size_t>(0, pixel_count, PLACES_AT_ONCE),
-                          [&](const auto& places) {
-                              for (size_t place = places.begin(); place < places.end(); ++place) {
-                                  const f32x4 value = value_at(place);
-                                  float* const pixel =
-                                      &layer.pixels[(film.first_pixel + film.pixel_order[place]) * channels];
-                                  for (size_t c = 0; c < channels; ++c)
-                                      pixel[c] = component(value, first + c);
-                              }
-                          });
+        const auto fill_range = [&](const tbb::blocked_range<size_t>& places) {
+            for (size_t place = places.begin(); place < places.end(); ++place) {
+                const f32x4 value = value_at(place);
+                float* const pixel = &layer.pixels[(film.first_pixel + film.pixel_order[place]) * channels];
+                for (size_t c = 0; c < channels; ++c)
+                    pixel[c] = component(value, first + c);
+            }
+        };
+        tbb::parallel_for(tbb::blocked_range<size_t>(0, pixel_count, PLACES_AT_ONCE), fill_range);
     };
     for (Layer& layer : image.layers) {
         if (layer.name.empty()) {

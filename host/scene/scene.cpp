@@ -40,13 +40,10 @@ double triangle_area(const Scene& scene, uint32_t triangle) {
 }
 
 double longest_edge(const Scene& scene, uint32_t triangle) {
-    double longest2 = 0;
-    for (int i = 0; i < 3; ++i) {
-        const V3d from(scene.corner(triangle, i).position);
-        const V3d to(scene.corner(triangle, (i + 1) % 3).position);
-        longest2 = std::max(longest2, (to - from).length2());
-    }
-    return std::sqrt(longest2);
+    const V3d a(scene.corner(triangle, 0).position);
+    const V3d b(scene.corner(triangle, 1).position);
+    const V3d c(scene.corner(triangle, 2).position);
+    return std::sqrt(std::max({(b - a).length2(), (c - b).length2(), (a - c).length2()}));
 }
 
 double diagonal(const Scene& scene) {

@@ -46,13 +46,12 @@ namespace obscura {
 #endif
 
 // 128 bytes: two cache lines, of which only smooth and textured triangles need the second.
+// ids: material, index into the area lights or NO_LIGHT, TRIANGLE_* flags, longest edge in m (float bits).
 typedef struct SceneTriangle {
     f32x4 corner[3];  // xyz: world position, m; w: x, y, z of the unit normal that the winding gives
-    u32x4
-        ids;  // material, index into the area lights or NO_LIGHT, TRIANGLE_* flags, longest edge in m (float bits)
-    f32x4 normal
-        [3];  // xyz: unit vertex normal (used when TRIANGLE_SMOOTH); w: u of the corner's texture coordinates
-    f32x4 v;  // xyz: v of the corners' texture coordinates; w: unused
+    u32x4 ids;
+    f32x4 normal[3];  // xyz: unit vertex normal (used when TRIANGLE_SMOOTH); w: u of the texture coordinates
+    f32x4 v;          // xyz: v of the corners' texture coordinates; w: unused
 } SceneTriangle;
 
 // 112 bytes; the model is documented in host/scene/material.h.

@@ -52,7 +52,7 @@
 #define LAYER_SHADING 9     // xyz: shading normal of the first hit; w: unused
 #define LAYER_ALBEDO 10     // rgb: diffuse + specular albedo of the first hit; w: unused
 #define LAYER_UV 11         // x: u, y: v, texture coordinates of the first hit; z, w: unused
-// rgb: sum of squared deviations of the samples' beauty from their mean. Only film fills it; it is 0 in path slots.
+// rgb: sum of squared deviations of the samples' beauty from their mean. Only film fills it; path slots leave room for it.
 #define LAYER_VARIANCE 12
 #define LAYER_COUNT 13
 

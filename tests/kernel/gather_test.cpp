@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stage gather: light samples times their visibility and the mean of the K obscurance results arrive in the layers
 // of their path's slot, and in no other.
+#include <array>
+
 #include "support/device.h"
 #include "support/kernel_queue.h"
 #include "support/scene_builder.h"

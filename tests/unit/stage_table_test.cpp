@@ -16,6 +16,8 @@ TEST(NeededStages, AreThoseWithWork) {
     using enum Stage;
     Needs needs;
     EXPECT_EQ(needed_stages(needs), (std::vector{camera, trace, shade, gather, film}));
+    needs.ambient = true;  // constant
+    EXPECT_EQ(needed_stages(needs), (std::vector{camera, trace, shade, gather, film}));
     needs.obscurance = true;
     EXPECT_EQ(needed_stages(needs), (std::vector{camera, trace, shade, obscurance, gather, film}));
     needs.spot_lights = true;
