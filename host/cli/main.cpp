@@ -13,12 +13,14 @@
 #include "cli/bench.h"
 #include "cli/check.h"
 #include "cli/compare.h"
+#include "cli/compile_kernels.h"
 #include "cli/devices.h"
 #include "cli/info.h"
 #include "cli/merge.h"
 #include "cli/reference.h"
 #include "cli/render.h"
 #include "cli/sweep.h"
+#include "device/compile_processes.h"
 
 namespace obscura {
 namespace {
@@ -44,6 +46,7 @@ ExitCode run(int argc, char** argv) {
     add_bench_command(app, exit_code);
     add_check_command(app, exit_code);
     add_compare_command(app, exit_code);
+    add_compile_kernels_command(app);
     add_devices_command(app, exit_code);
     add_info_command(app, exit_code);
     add_merge_command(app, exit_code);
@@ -73,6 +76,7 @@ int main(int argc, char** argv) {
     using obscura::ExitCode;
     ExitCode exit_code = ExitCode::ok;
     try {
+        obscura::set_compile_program("/proc/self/exe");
         exit_code = obscura::run(argc, argv);
         if (std::fflush(stdout) != 0) throw obscura::InputError("Standard output can't be written");
     } catch (const obscura::InputError& error) {

@@ -98,6 +98,7 @@ std::vector<std::unique_ptr<Device>> open_devices(std::string_view selector) {
         for (size_t i = 0; i < parts.size(); ++i) {
             DeviceInfo part = info;
             part.max_sub_devices = 0;
+            part.parts = choice.parts;
             check(parts[i].getInfo(CL_DEVICE_MAX_COMPUTE_UNITS, &part.compute_units), "clGetDeviceInfo",
                   "splitting the device", info.name);
             devices.push_back(std::make_unique<Device>(

@@ -14,17 +14,20 @@
 // So a kernel is launched once over no items before its program goes to the cache. The last row is the same
 // with PoCL's own cache warm or switched off; source with that cache warm takes 70 to 160 ms. The attribute
 // reqd_work_group_size changes none of these times. PoCL compiles under one lock, whatever the
-// context: threads gain nothing.
+// context: threads gain nothing, processes do (compile_processes.h).
 #include "device/program.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
+#include <numeric>
+#include <unordered_set>
 #include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/stopwatch.h"
 #include "base/units.h"
+#include "device/compile_processes.h"
 #include "device/error.h"
 #include "device/kernel_source.h"
 #include "device/warm_up.h"
@@ -32,22 +35,6 @@
 namespace obscura {
 
 namespace {
-
-// Adds its own lifetime to a sum of seconds.
-class Stopwatch {
-  public:
-    explicit Stopwatch(double& sum) : sum_(sum) {}
-    ~Stopwatch() { sum_ += seconds(); }
-    Stopwatch(const Stopwatch&) = delete;
-    Stopwatch& operator=(const Stopwatch&) = delete;
-
-    double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
-  private:
-    using Clock = std::chrono::steady_clock;
-    double& sum_;
-    Clock::time_point start_ = Clock::now();
-};
 
 // Before the compilation a line without an end, so that it can be seen what takes the time; then its end.
 void say_compiling(size_t number, size_t count, const std::string& stage) {
@@ -57,6 +44,17 @@ void say_compiling(size_t number, size_t count, const std::string& stage) {
 
 void say_compiled(const std::string& outcome) {
     if (!is_quiet()) fmt::print(stderr, "{}\n", outcome);
+}
+
+// About in proportion to the time that the compiler takes. Headers that are included again are not read again.
+size_t distinct_lines(std::string_view text) {
+    std::unordered_set<std::string_view> lines;
+    for (size_t first = 0; first < text.size();) {
+        const size_t last = std::min(text.find('\n', first), text.size());
+        lines.insert(text.substr(first, last - first));
+        first = last + 1;
+    }
+    return lines.size();
 }
 
 // Traversal, intersection and the exact merging of images rest on IEEE arithmetic.
@@ -81,7 +79,7 @@ std::vector<cl::Kernel> ProgramLibrary::kernels(std::span<const KernelRequest> r
     sources.reserve(requests.size());
     for (const KernelRequest& request : requests)
         sources.push_back(source_of(request));
-    prepare(sources);
+    prepare(requests, sources);
     std::vector<cl::Kernel> kernels;
     kernels.reserve(sources.size());
     for (const Source& source : sources)
@@ -97,32 +95,44 @@ cl::Kernel ProgramLibrary::kernel(const std::string& stage, const std::string& o
     return kernel(KernelRequest{.stage = stage, .options = options});
 }
 
-// Builds those programs that are neither in memory nor in the cache.
-void ProgramLibrary::prepare(std::span<const Source> sources) {
+// Builds those programs that are neither in memory nor in the cache: a share of them, while other processes put the rest
+// into the cache.
+void ProgramLibrary::prepare(std::span<const KernelRequest> requests, std::span<const Source> sources) {
     std::vector<const Source*> missing;
-    for (const Source& source : sources) {
-        const auto is_same = [&](const Source* other) { return other->key == source.key; };
-        if (!load(source) && std::ranges::none_of(missing, is_same)) missing.push_back(&source);
+    std::vector<KernelRequest> missing_requests;
+    std::vector<size_t> costs;
+    for (size_t i = 0; i < sources.size(); ++i) {
+        const auto is_same = [&](const Source* other) { return other->key == sources[i].key; };
+        if (load(sources[i], "hit") || std::ranges::any_of(missing, is_same)) continue;
+        missing.push_back(&sources[i]);
+        missing_requests.push_back(requests[i]);
+        costs.push_back(distinct_lines(sources[i].text));
     }
-    for (size_t i = 0; i < missing.size(); ++i) {
-        const Source& source = *missing[i];
-        say_compiling(i + 1, missing.size(), source.stage);
-        const double seconds_before = compile_seconds_;
-        std::vector<unsigned char> binary;
+    CompileProcesses others(device_, local_size_, missing_requests, costs);
+    std::vector<size_t> order(missing.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::ranges::stable_partition(order, [&](size_t i) { return !others.takes(i); });
+    for (size_t done = 0; done < order.size(); ++done) {
+        const Source& source = *missing[order[done]];
+        say_compiling(done + 1, missing.size(), source.stage);
+        const Stopwatch stopwatch;
         try {
-            binary = compile(source);
+            const bool expected = others.takes(order[done]);
+            if (expected) {
+                const TraceStep step(device_.trace(), TraceCategory::host, "wait for another process");
+                others.wait_for(order[done]);
+            }
+            if (!expected || !load(source, "filled by another process")) compile(source);
         } catch (...) {
             say_compiled("failed");
             throw;
         }
-        say_compiled(duration_text(compile_seconds_ - seconds_before));
-        if (!binary.empty()) cache_.store(source.key, binary);
+        say_compiled(duration_text(stopwatch.seconds()));
     }
 }
 
 cl::Kernel ProgramLibrary::kernel_from_text(const std::string& stage, const std::string& text,
                                             const std::string& kernel, const std::string& options) {
-    const Stopwatch stopwatch(compile_seconds_);
     const Source source = make_source(stage, expand_kernel_text(stage, text), kernel, options);
     auto found = programs_.find(source.key);
     if (found == programs_.end()) {
@@ -158,13 +168,11 @@ ProgramLibrary::Source ProgramLibrary::make_source(const std::string& stage, con
 
 // Takes the program from memory or from the disk cache. A cached program that the device refuses is as good
 // as none.
-bool ProgramLibrary::load(const Source& source) {
-    const Stopwatch stopwatch(compile_seconds_);
+bool ProgramLibrary::load(const Source& source, std::string_view from) {
     if (programs_.contains(source.key)) return true;
     const auto binary = cache_.load(source.key);
     if (!binary) return false;
-    const TraceStep step(device_.trace(), TraceCategory::compile, "compile " + source.stage,
-                         {"cache", "hit"});
+    const TraceStep step(device_.trace(), TraceCategory::compile, "compile " + source.stage, {"cache", from});
     std::vector<cl_int> status;
     cl_int code = CL_SUCCESS;
     cl::Program program(device_.context(), {device_.handle()}, {*binary}, &status, &code);
@@ -177,9 +185,8 @@ bool ProgramLibrary::load(const Source& source) {
     return true;
 }
 
-// Returns the binary to keep, empty if the device has none to give.
-std::vector<unsigned char> ProgramLibrary::compile(const Source& source) {
-    const Stopwatch stopwatch(compile_seconds_);
+// Compiles the program and keeps it, in the cache, too, if the device gives its binary.
+void ProgramLibrary::compile(const Source& source) {
     const TraceStep step(device_.trace(), TraceCategory::compile, "compile " + source.stage,
                          {"cache", "miss"});
     const cl::Program program = build_from_text(source);
@@ -189,7 +196,7 @@ std::vector<unsigned char> ProgramLibrary::compile(const Source& source) {
     check(program.getInfo(CL_PROGRAM_BINARIES, &binaries), "clGetProgramInfo", source.stage, device_.name());
     programs_.emplace(source.key, program);
     ++compiled_count_;
-    return binaries.empty() ? std::vector<unsigned char>() : std::move(binaries.front());
+    if (!binaries.empty() && !binaries.front().empty()) cache_.store(source.key, binaries.front());
 }
 
 cl::Program ProgramLibrary::build_from_text(const Source& source) const {

@@ -7,6 +7,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "device/device.h"
@@ -42,9 +43,8 @@ class ProgramLibrary {
                                 const std::string& options = {});
 
     uint32_t local_size() const { return local_size_; }
-    double compile_seconds() const { return compile_seconds_; }  // wall time of all builds, cached or not
-    int compiled_count() const { return compiled_count_; }       // built from source
-    int cache_hit_count() const { return cache_hit_count_; }     // taken from the disk cache
+    int compiled_count() const { return compiled_count_; }    // built from source
+    int cache_hit_count() const { return cache_hit_count_; }  // taken from the disk cache
 
   private:
     struct Source {
@@ -53,9 +53,10 @@ class ProgramLibrary {
     Source source_of(const KernelRequest& request) const;
     Source make_source(const std::string& stage, const std::string& text, const std::string& kernel,
                        const std::string& options) const;
-    void prepare(std::span<const Source> sources);
-    bool load(const Source& source);
-    std::vector<unsigned char> compile(const Source& source);
+    void prepare(std::span<const KernelRequest> requests, std::span<const Source> sources);
+    // from: where the cache has it from, for the trace.
+    bool load(const Source& source, std::string_view from);
+    void compile(const Source& source);
     cl::Program build_from_text(const Source& source) const;
     cl::Kernel make_kernel(const cl::Program& program, const Source& source) const;
 
@@ -63,7 +64,6 @@ class ProgramLibrary {
     uint32_t local_size_;
     ProgramCache cache_;
     std::map<std::string, cl::Program> programs_;  // by Source::key
-    double compile_seconds_ = 0;
     int compiled_count_ = 0;
     int cache_hit_count_ = 0;
 };

@@ -22,6 +22,7 @@ struct DeviceInfo {
     std::string name, driver_version, opencl_version;
     uint32_t compute_units = 0;
     uint32_t max_sub_devices = 0;  // that it can be split into; 0 = it can't
+    uint32_t parts = 1;            // it is one of so many sub-devices; 1 = a device as it is
     uint64_t memory_bytes = 0, max_allocation_bytes = 0;
     std::vector<std::string> float_features;  // what CL_DEVICE_SINGLE_FP_CONFIG names
     bool is_cpu = false;

@@ -17,6 +17,8 @@ constexpr uint64_t LANE_BYTES = sizeof(f32x4);
 constexpr uint64_t MIN_WAVE = 64;
 // Passes that go together: rays of the same pixel go nearly the same way through the same memory.
 constexpr uint32_t MAX_PASSES_TOGETHER = 16;
+// Of so few samples (1.5 s on two cores) it doesn't matter where a render is stopped that has no more of them.
+constexpr uint64_t SAMPLES_TOGETHER = uint64_t{1} << 22;
 // Kernels count elements of queues, pixels and samples in 32 bits, up to the next multiple of a work-group or a share: half
 // the range leaves room for it.
 constexpr uint64_t MAX_INDEX = 0x7fffffff;
@@ -102,9 +104,13 @@ Wave wave_after(const Wave& wave, uint32_t capacity, uint32_t pixel_count, uint3
     if (next.first_pixel == pixel_count || wave.sample_count() == 0) {
         next.first_pixel = 0;
         next.first_pass += wave.pass_count;
-        const uint32_t as_before = std::clamp(std::bit_floor(next.first_pass), 1u, MAX_PASSES_TOGETHER);
+        // The first pass goes alone.
+        const uint32_t as_before = std::bit_floor(next.first_pass);
+        const uint32_t quickly =
+            next.first_pass > 0 ? static_cast<uint32_t>(SAMPLES_TOGETHER / pixel_count) : 1;
+        const uint32_t together = std::clamp(std::max(as_before, quickly), 1u, MAX_PASSES_TOGETHER);
         next.pass_count =
-            std::min({std::max(as_before, capacity / pixel_count), capacity, end_pass - next.first_pass});
+            std::min({std::max(together, capacity / pixel_count), capacity, end_pass - next.first_pass});
     }
     if (next.pass_count == 0) return {};
     const uint32_t most = capacity / next.pass_count;

@@ -45,9 +45,10 @@ struct Wave {
 };
 
 // The wave that follows one over so many pixels, up to end_pass; no samples past the end. The first follows an empty one,
-// which has but the first pass. All pixels have some passes before any has more: as many as a wave holds of all pixels, or as
-// the pixels have already, up to sixteen; so the samples of a stopped picture differ twofold at most once all have one, and
-// later hardly. The waves over the same passes are of about one size.
+// which has but the first pass. All pixels have some passes before any has more: as many as a wave holds of all pixels, as
+// the pixels have already, or, once all have one, as take a moment; the latter two up to sixteen. So a stopped picture is
+// whole early, and the samples of its pixels differ twofold at most but in its first moments. The waves over the same passes
+// are of about one size.
 Wave wave_after(const Wave& wave, uint32_t capacity, uint32_t pixel_count, uint32_t end_pass);
 
 // Once the wave is done, and all before it.

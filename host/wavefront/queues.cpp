@@ -28,7 +28,8 @@ Queues allocate_queues(Device& device, const QueueShape& shape, uint32_t capacit
     queues.counters = Buffer(device, "counters", "status", sizeof(DeviceStatus));
     queues.sample_order = Buffer::holding(device, "sample_order", "queues", sample_order);
     queues.pixel_order = Buffer(device, "pixel_order", "queues", uint64_t{pixels} * sizeof(uint32_t));
-    queues.film = Buffer(device, "film", "film", uint64_t{pixels} * shape.layer_planes * sizeof(FilmSum));
+    queues.film = Buffer(device, "film", "film", uint64_t{pixels} * shape.layer_planes * sizeof(FilmSum),
+                         Pages::huge);  // the first pass gets them all, one fault for each
     return queues;
 }
 

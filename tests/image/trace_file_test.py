@@ -16,6 +16,8 @@ PROGRAM = os.environ["OBSCURA_PROGRAM"]
 SCENE = pathlib.Path(__file__).resolve().parents[2] / "scenes/cornell"
 SMALL = ["--width", "64", "--height", "48", "--obscurance-rays", "3", "--wave-size", "4096", "--quiet"]
 HOST, DEVICE = 1, 2  # processes
+# How the rest of the programs come into the cache where several cores compile them.
+FILLED = {"filled by another process"} if os.cpu_count() > 1 else set()
 
 
 def render(folder, *arguments, **environment):
@@ -73,9 +75,14 @@ class Trace(unittest.TestCase):
         self.assertEqual(self.stats["bytes"]["film"], transfers["map film"])
 
     def test_programs_tell_whether_they_were_compiled(self):
-        for events, cache in ((self.cold, "miss"), (self.events, "hit")):
-            programs = {event["name"]: event["args"]["cache"] for event in slices(events, "compile", HOST)}
-            self.assertEqual({"compile " + name.split("_")[0]: cache for name in self.stats["kernels"]}, programs)
+        stages = {"compile " + name.split("_")[0] for name in self.stats["kernels"]}
+        cold, warm = ({event["name"]: event["args"]["cache"] for event in slices(events, "compile", HOST)}
+                      for events in (self.cold, self.events))
+        self.assertEqual({stage: "hit" for stage in stages}, warm)
+        self.assertEqual(stages, set(cold))
+        self.assertEqual({"miss", *FILLED}, set(cold.values()))
+        waits = {event["name"] for event in slices(self.cold, "host", HOST)} & {"wait for another process"}
+        self.assertEqual(len(FILLED), len(waits))
 
     def test_steps_of_the_host_are_there(self):
         steps = slices(self.events, "host", HOST)
@@ -156,7 +163,7 @@ class Interrupted(unittest.TestCase):
 
     def test_render_interrupted_before_its_first_wave_leaves_the_compilations(self):
         events = self.interrupt(SCENE.name, OBSCURA_CACHE_DIR="", POCL_CACHE_DIR="")
-        self.assertEqual({"miss"}, {event["args"]["cache"] for event in slices(events, "compile")})
+        self.assertEqual({"miss", *FILLED}, {event["args"]["cache"] for event in slices(events, "compile")})
 
 
 if __name__ == "__main__":

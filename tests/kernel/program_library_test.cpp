@@ -148,7 +148,6 @@ TEST_F(ProgramLibraryOnDevice, KernelFromFolderRuns) {
     ProgramLibrary library(device());
     EXPECT_EQ(scaled_two(library), 6.0f);
     EXPECT_EQ(library.compiled_count(), 1);
-    EXPECT_GT(library.compile_seconds(), 0.0);
 }
 
 TEST_F(ProgramLibraryOnDevice, SecondLibraryTakesProgramFromCache) {
