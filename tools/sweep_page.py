@@ -309,7 +309,7 @@ def main_plot(sweep, path):
     figure, axes = plt.subplots(1, 2, figsize=(11, 4.4), layout="constrained")
     for place, names, layer, abscissa, error, label, title in (
             (axes[0], SAMPLERS, "obscurance", "rays", absolute, "rays of a picture", "Noise of the obscurances, by sample points"),
-            (axes[1], MODELS, "diffuse", "seconds", relative, "seconds of rendering", "Error of all diffuse light, by model; dotted: what any time leaves")):
+            (axes[1], MODELS, "diffuse", "seconds", relative, "seconds of rendering", "Error of diffuse light, by model; dotted: its floor")):
         for name in names:
             if name in sweep["methods"]:
                 plot_method(place, sweep, name, layer, abscissa, error)

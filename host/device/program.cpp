@@ -111,7 +111,7 @@ void ProgramLibrary::prepare(std::span<const KernelRequest> requests, std::span<
     CompileProcesses others(device_, local_size_, missing_requests, costs);
     std::vector<size_t> order(missing.size());
     std::iota(order.begin(), order.end(), size_t{0});
-    std::ranges::stable_partition(order, [&](size_t i) { return !others.takes(i); });
+    std::stable_partition(order.begin(), order.end(), [&](size_t i) { return !others.takes(i); });
     for (size_t done = 0; done < order.size(); ++done) {
         const Source& source = *missing[order[done]];
         say_compiling(done + 1, missing.size(), source.stage);

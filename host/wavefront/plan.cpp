@@ -17,7 +17,7 @@ constexpr uint64_t LANE_BYTES = sizeof(f32x4);
 constexpr uint64_t MIN_WAVE = 64;
 // Passes that go together: rays of the same pixel go nearly the same way through the same memory.
 constexpr uint32_t MAX_PASSES_TOGETHER = 16;
-// Of so few samples (1.5 s on two cores) it doesn't matter where a render is stopped that has no more of them.
+// So few samples (the kitchen's take two cores 1.5 s) that it matters little how uneven a picture is that is stopped in them.
 constexpr uint64_t SAMPLES_TOGETHER = uint64_t{1} << 22;
 // Kernels count elements of queues, pixels and samples in 32 bits, up to the next multiple of a work-group or a share: half
 // the range leaves room for it.

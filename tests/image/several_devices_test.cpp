@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -130,13 +129,13 @@ RenderResult stopped_after(const RenderJob& job, Device& device, ProgramLibrary&
 
 TEST_F(SeveralDevices, StoppedPictureHasTheFirstSamplesOfEveryPixel) {
     const RenderSettings settings = room_settings();
-    // Waves of as many samples as there are pixels. Passes go together as in the pieces of several devices: the third
-    // with the fourth, and the last four.
+    // One wave of so many samples of every pixel.
     std::vector<Image> after;
-    for (uint32_t waves = 0; waves <= settings.spp; ++waves) {
-        RenderResult result = stopped_after(job(settings, {.wave_size = uint64_t{WIDTH} * HEIGHT}), device(),
-                                            shared_library(64), waves);
-        EXPECT_EQ(result.samples_per_pixel, std::bit_floor(waves));
+    for (uint32_t samples = 0; samples <= settings.spp; ++samples) {
+        const uint64_t wave_size = uint64_t{WIDTH} * HEIGHT * std::max(samples, 1u);
+        RenderResult result = stopped_after(job(settings, {.wave_size = wave_size}), device(),
+                                            shared_library(64), samples == 0 ? 0 : 1);
+        EXPECT_EQ(result.samples_per_pixel, samples);
         after.push_back(std::move(result.image));
     }
     for (const double end : {0.1, 0.7}) {
