@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "base/log.h"
 #include "device/compile_processes.h"
 
@@ -22,8 +23,10 @@ struct CompileOptions {
 void compile_kernels(const CompileOptions& options) {
     set_quiet(true);
     set_compile_program({});  // it has no processes of its own
+    if (options.requests.size() % 4 != 0)
+        throw InputError("compile-kernels takes stage, options, file and kernel of each request.");
     std::vector<KernelRequest> requests;
-    for (size_t i = 0; i + 3 < options.requests.size(); i += 4)
+    for (size_t i = 0; i < options.requests.size(); i += 4)
         requests.push_back(
             {options.requests[i], options.requests[i + 1], options.requests[i + 2], options.requests[i + 3]});
     const auto devices = open_devices(options.device);
